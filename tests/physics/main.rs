@@ -38,4 +38,3 @@ mod statics;
 mod storeys_capsule;
 mod system;
 mod velocity_verlet;
-mod xpbd;

@@ -42,12 +42,12 @@ fn a_plan_counts_the_points_that_an_integrator_refuses_and_they_end_so() {
     study["gas"]["mass_flow_rate"] = json!("5 g/s");
     study["contact"] = json!({"adhesion": "1 kPa"});
     study["grid"] = json!({
-        "N": [6], "integrator": ["explicit", "implicit", "hybrid", "xpbd"], "contact.friction": [0, 0.2]
+        "N": [6], "integrator": ["explicit", "implicit", "hybrid"], "contact.friction": [0, 0.2]
     });
     let folder = TestFolder::new(&study);
     let planned = stderr(&folder.run(&["plan", "grid.json"]));
-    let note = "note: 4 of 8 points will end as invalid: hybrid has no friction, implicit has no friction, \
-                xpbd has no adhesion, xpbd has no friction";
+    let note =
+        "note: 2 of 6 points will end as invalid: hybrid has no friction, implicit has no friction";
     assert!(
         planned.contains(note) && planned.contains("or solver.integrator explicit"),
         "{planned}"
@@ -55,7 +55,7 @@ fn a_plan_counts_the_points_that_an_integrator_refuses_and_they_end_so() {
     folder.run(&["run", "grid.json", "-q"]);
     let rows = folder.rows("results/grid");
     let invalid = rows.iter().filter(|row| row["status"] == "invalid");
-    assert_eq!(invalid.count(), 4, "{rows:?}");
+    assert_eq!(invalid.count(), 2, "{rows:?}");
 }
 
 #[test]

@@ -105,11 +105,6 @@ impl<'a> FilmView<'a> {
         self.integrator.smallest_gap()
     }
 
-    /// What the last step left of the method's equations; `None` for a method without iterations.
-    pub fn residual(&self) -> Option<f64> {
-        self.integrator.residual()
-    }
-
     /// Passages of film through film so far; `None` without an audit.
     pub fn passages(&self) -> Option<u64> {
         self.audit.passages().map(PassageAudit::passages)

@@ -161,12 +161,6 @@ pub trait Integrator: fmt::Debug + Send {
     /// Smallest gap of pairs of film closer than their contact distance, m; infinite if there is none.
     fn smallest_gap(&self) -> f64;
 
-    /// What the last step left of the method's equations, relative to their terms; `None` for a method
-    /// without iterations.
-    fn residual(&self) -> Option<f64> {
-        None
-    }
-
     /// Private state for a checkpoint; `None` for an integrator that cannot be resumed.
     fn stored(&self) -> Option<StoredIntegrator>;
 

@@ -24,7 +24,6 @@ mod motion_audit;
 pub mod passage_audit;
 mod pressure_audit;
 mod virtual_displacement;
-pub mod xpbd;
 
 pub use film_simulation::{FilmSimulation, SimulationSettings, StoredFilm};
 pub use film_view::FilmView;
@@ -40,41 +39,23 @@ pub struct IntegratorEntry {
     pub meaning: &'static str,
     /// The integrator of a state, with the workspace that evaluated it, at a CFL number.
     pub start: fn(&FilmSystem, &FilmState, Workspace, f64) -> Box<dyn Integrator>,
-    /// Forces of contact that it lacks.
-    pub lacks: &'static [ContactForce],
-    /// Why it cannot move a system, but for contact; `None` if it can.
+    /// Whether it knows Coulomb friction.
+    pub has_friction: bool,
+    /// Why it cannot move a system, but for friction; `None` if it can.
     pub refuses: fn(&FilmSystem) -> Option<Refusal>,
 }
 
-/// A force of contact that an integrator may lack.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ContactForce {
-    /// Coulomb friction.
-    Friction,
-    /// Adhesion.
-    Adhesion,
-}
-
 impl IntegratorEntry {
-    /// Why it cannot move film with this friction coefficient and this pull-off pressure (Pa); `None` if it can.
-    pub fn refuses_contact(&self, friction: f64, pull_off_pressure: f64) -> Option<Refusal> {
-        let refused = |force: &ContactForce| {
-            let (value, unknown, allowed) = match force {
-                ContactForce::Friction => (friction, "friction", "contact.friction 0"),
-                ContactForce::Adhesion => (pull_off_pressure, "adhesion", "contact.adhesion 0"),
-            };
-            (value > 0.0).then_some(Refusal { unknown, allowed })
-        };
-        self.lacks.iter().find_map(refused)
+    /// Why it cannot move film with this friction coefficient; `None` if it can.
+    pub fn refuses_friction(&self, coefficient: f64) -> Option<Refusal> {
+        let refused = coefficient > 0.0 && !self.has_friction;
+        refused.then_some(Refusal { unknown: "friction", allowed: "contact.friction 0" })
     }
 
     /// Why it cannot move a system; `None` if it can.
     pub fn refusal(&self, system: &FilmSystem) -> Option<Refusal> {
-        let contact = system
-            .contact
-            .as_ref()
-            .and_then(|model| self.refuses_contact(model.friction, model.adhesion.pressure));
-        contact.or_else(|| (self.refuses)(system))
+        let friction = system.contact.as_ref().map_or(0.0, |model| model.friction);
+        self.refuses_friction(friction).or_else(|| (self.refuses)(system))
     }
 }
 
@@ -93,7 +74,6 @@ pub const fn entry(kind: IntegratorKind) -> &'static IntegratorEntry {
         IntegratorKind::Explicit => &explicit::ENTRY,
         IntegratorKind::Implicit => &implicit::ENTRY,
         IntegratorKind::Hybrid => &hybrid::ENTRY,
-        IntegratorKind::Xpbd => &xpbd::ENTRY,
     }
 }
 
@@ -107,8 +87,6 @@ pub enum StoredIntegrator {
     Implicit(Box<implicit::StoredImplicit>),
     /// Of [`hybrid`].
     Hybrid(Box<hybrid::StoredHybrid>),
-    /// Of [`xpbd`].
-    Xpbd(xpbd::StoredXpbd),
 }
 
 impl StoredIntegrator {
@@ -118,7 +96,6 @@ impl StoredIntegrator {
             Self::Explicit(_) => IntegratorKind::Explicit,
             Self::Implicit(_) => IntegratorKind::Implicit,
             Self::Hybrid(_) => IntegratorKind::Hybrid,
-            Self::Xpbd(_) => IntegratorKind::Xpbd,
         }
     }
 
@@ -130,7 +107,6 @@ impl StoredIntegrator {
             }
             Self::Implicit(stored) => Box::new(implicit::Implicit::resume(system, state, *stored)),
             Self::Hybrid(stored) => Box::new(hybrid::Hybrid::resume(system, state, *stored, cfl)),
-            Self::Xpbd(stored) => Box::new(xpbd::Xpbd::resume(system, state, &stored, cfl)),
         }
     }
 
@@ -140,8 +116,6 @@ impl StoredIntegrator {
             Self::Explicit(stored) => stored.fits(system),
             Self::Implicit(stored) => stored.fits(system),
             Self::Hybrid(stored) => stored.fits(system),
-            // It holds no field of the film.
-            Self::Xpbd(_) => true,
         }
     }
 }

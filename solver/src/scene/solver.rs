@@ -34,13 +34,11 @@ pub enum IntegratorKind {
     Implicit,
     /// Explicit while film moves, implicit while it hardly does: [`crate::integrators::hybrid`].
     Hybrid,
-    /// Extended position-based dynamics: [`crate::integrators::xpbd`].
-    Xpbd,
 }
 
 impl IntegratorKind {
     /// Every kind.
-    pub const ALL: [Self; 4] = [Self::Explicit, Self::Implicit, Self::Hybrid, Self::Xpbd];
+    pub const ALL: [Self; 3] = [Self::Explicit, Self::Implicit, Self::Hybrid];
 
     /// Whether it is the one of a scene that names none. Job ids depend on this: a scene that names none
     /// keeps its id.

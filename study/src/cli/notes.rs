@@ -146,14 +146,13 @@ fn below_ambient(study: &Study) -> Option<String> {
     })
 }
 
-/// A note on points whose integrator lacks a force of contact that they have: each ends as invalid.
+/// A note on points with friction whose integrator has none: each ends as invalid.
 fn refused_by_integrators(study: &Study) -> Option<String> {
     let refusal = |point: &StudyPoint| {
         let (solver, contact) = (&point.scene.solver, &point.scene.contact);
         let entry =
             (solver.model == ModelKind::Film).then(|| integrators::entry(solver.integrator))?;
-        let Refusal { unknown, allowed } =
-            entry.refuses_contact(contact.friction, contact.adhesion)?;
+        let Refusal { unknown, allowed } = entry.refuses_friction(contact.friction)?;
         Some((format!("{} has no {unknown}", entry.name), allowed))
     };
     let refused: Vec<(String, &str)> = study.points().iter().filter_map(refusal).collect();

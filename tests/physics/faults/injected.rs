@@ -9,7 +9,6 @@ use billow_solver::integrators::energy_accounting::EnergyAccounting;
 use billow_solver::integrators::explicit::Explicit;
 use billow_solver::integrators::hybrid::Hybrid;
 use billow_solver::integrators::implicit::Implicit;
-use billow_solver::integrators::xpbd::Xpbd;
 use billow_solver::integrators::{
     Advance, Budget, FilmSimulation, Integrator, Interval, StoredFilm, StoredIntegrator, entry,
 };
@@ -74,7 +73,6 @@ fn resumed(
         }
         StoredIntegrator::Implicit(stored) => Box::new(Implicit::resume(system, state, *stored)),
         StoredIntegrator::Hybrid(stored) => Box::new(Hybrid::resume(system, state, *stored, cfl)),
-        StoredIntegrator::Xpbd(stored) => Box::new(Xpbd::resume(system, state, &stored, cfl)),
     }
 }
 
@@ -213,10 +211,6 @@ impl Integrator for Injected {
 
     fn smallest_gap(&self) -> f64 {
         self.inner.smallest_gap()
-    }
-
-    fn residual(&self) -> Option<f64> {
-        self.inner.residual()
     }
 
     fn stored(&self) -> Option<StoredIntegrator> {

@@ -16,7 +16,7 @@ pub fn ahead(stored: &mut StoredIntegrator) -> Option<&mut Ahead> {
             StoredActive::Implicit(stored) => stored.motion.ahead.as_deref_mut(),
             StoredActive::Explicit(_) => None,
         },
-        StoredIntegrator::Explicit(_) | StoredIntegrator::Xpbd(_) => None,
+        StoredIntegrator::Explicit(_) => None,
     }
 }
 
@@ -28,7 +28,7 @@ fn explicit(stored: &mut StoredFilm) -> Option<&mut StoredExplicit> {
             StoredActive::Explicit(stored) => Some(stored),
             StoredActive::Implicit(_) => None,
         },
-        StoredIntegrator::Implicit(_) | StoredIntegrator::Xpbd(_) => None,
+        StoredIntegrator::Implicit(_) => None,
     }
 }
 

@@ -20,16 +20,14 @@ pub struct Row {
     pub time: f64,
     /// What catches it: the name of an audit, `unseen` with the number of a reason, or `none` where the integrator has
     /// no such thing. In the order of `IntegratorKind::ALL`.
-    pub caught: [&'static str; 4],
+    pub caught: [&'static str; 3],
 }
 
 /// Why no audit sees a fault, by number.
-pub const REASONS: [&str; 3] = [
+pub const REASONS: [&str; 2] = [
     "The creep strain is forgotten for about its relaxation time (0.16 ms). That is g of the strain energy, 3 % at the \
      default loss, and in film that gas moves far below 1 % of the energy moved. In `strip` with loss 0.05 it is more, \
      and the ledger sees it.",
-    "xpbd closes its ledger by numerical dissipation, so a jump of stored energy below a tenth of the energy moved is \
-     hidden in it.",
     "The numerical stress lives for one step. What is missing is the numerical damping of that step.",
 ];
 
@@ -93,13 +91,13 @@ const fn row(
     fault: &'static str,
     (scene, start, time): (&'static str, SceneOf, f64),
     change: Change,
-    caught: [&'static str; 4],
+    caught: [&'static str; 3],
 ) -> Row {
     Row { fault, scene, start, change, time, caught }
 }
 
-const fn always(audit: &'static str) -> [&'static str; 4] {
-    [audit; 4]
+const fn always(audit: &'static str) -> [&'static str; 3] {
+    [audit; 3]
 }
 
 const BAG: (&str, SceneOf, f64) = ("bag", scenes::bag, 0.0102);
@@ -114,50 +112,30 @@ pub const ROWS: &[Row] = &[
         "sign of the elastic force",
         BAG,
         ELASTIC,
-        ["energy_source", "step_limit", "energy_source", "stretch"],
+        ["energy_source", "step_limit", "energy_source"],
     ),
     row(
         "sign of the elastic force",
         FILLING,
         ELASTIC,
-        ["energy_source", "step_limit", "energy_source", "stretch"],
+        ["energy_source", "step_limit", "energy_source"],
     ),
     row(
         "sign of the elastic force",
         CAPSULE,
         ELASTIC,
-        ["energy_source", "step_limit", "energy_source", "energy_source"],
+        ["energy_source", "step_limit", "energy_source"],
     ),
-    row(
-        "sign of the force of the pressure",
-        BAG,
-        PRESSURE,
-        ["pressure", "step_limit", "pressure", "pressure"],
-    ),
+    row("sign of the force of the pressure", BAG, PRESSURE, ["pressure", "step_limit", "pressure"]),
     row(
         "sign of the force of the pressure",
         FILLING,
         PRESSURE,
-        ["pressure", "step_limit", "pressure", "energy_source"],
+        ["pressure", "step_limit", "pressure"],
     ),
-    row(
-        "sign of the contact force",
-        SHEETS,
-        CONTACT,
-        ["contact", "step_limit", "contact", "energy_source"],
-    ),
-    row(
-        "sign of the contact force",
-        CAPSULE,
-        CONTACT,
-        ["contact", "step_limit", "contact", "energy_source"],
-    ),
-    row(
-        "sign of the numerical stress",
-        BAG,
-        NUMERICAL,
-        ["energy_ledger", "none", "energy_ledger", "none"],
-    ),
+    row("sign of the contact force", SHEETS, CONTACT, ["contact", "step_limit", "contact"]),
+    row("sign of the contact force", CAPSULE, CONTACT, ["contact", "step_limit", "contact"]),
+    row("sign of the numerical stress", BAG, NUMERICAL, ["energy_ledger", "none", "energy_ledger"]),
     row("gas loses 1 % more than its work", BAG, GAS_WORK, always("gas_balance")),
     row("gas loses 1 % more than its work", FILLING, GAS_WORK, always("gas_balance")),
     row("force of the pressure 1 % too large", BAG, PUSH, always("pressure")),
@@ -165,90 +143,50 @@ pub const ROWS: &[Row] = &[
     row("pressure 1 % too large", BAG, GAS_PRESSURE, always("pressure")),
     row("volume 1 % too large", BAG, VOLUME, always("pressure")),
     row("one step doubled", BAG, Change::DoubledStep, always("motion")),
-    row(
-        "one step doubled",
-        FILLING,
-        Change::DoubledStep,
-        ["motion", "pressure", "motion", "motion"],
-    ),
+    row("one step doubled", FILLING, Change::DoubledStep, ["motion", "pressure", "motion"]),
     row("one step doubled", SHEETS, Change::DoubledStep, always("motion")),
-    row(
-        "NaN in one position",
-        BAG,
-        NAN_POSITION,
-        ["finite_motion", "step_limit", "finite_motion", "finite_motion"],
-    ),
-    row(
-        "NaN in one position",
-        FILLING,
-        NAN_POSITION,
-        ["finite_motion", "step_limit", "pressure", "finite_motion"],
-    ),
-    row(
-        "NaN in one velocity",
-        BAG,
-        NAN_VELOCITY,
-        ["finite_motion", "step_limit", "finite_motion", "finite_motion"],
-    ),
-    row(
-        "NaN in one velocity",
-        FILLING,
-        NAN_VELOCITY,
-        ["finite_motion", "step_limit", "pressure", "finite_motion"],
-    ),
+    row("NaN in one position", BAG, NAN_POSITION, ["finite_motion", "step_limit", "finite_motion"]),
+    row("NaN in one position", FILLING, NAN_POSITION, ["finite_motion", "step_limit", "pressure"]),
+    row("NaN in one velocity", BAG, NAN_VELOCITY, ["finite_motion", "step_limit", "finite_motion"]),
+    row("NaN in one velocity", FILLING, NAN_VELOCITY, ["finite_motion", "step_limit", "pressure"]),
     row(
         "NaN in the forces of one step",
         BAG,
         NAN_FORCE,
-        ["finite_motion", "step_limit", "finite_motion", "finite_motion"],
+        ["finite_motion", "step_limit", "finite_motion"],
     ),
     row(
         "NaN in the forces of one step",
         FILLING,
         NAN_FORCE,
-        ["finite_motion", "step_limit", "finite_motion", "finite_motion"],
+        ["finite_motion", "step_limit", "finite_motion"],
     ),
     row(
         "NaN in the energy of the gas",
         BAG,
         NAN_GAS,
-        ["finite_motion", "step_limit", "finite_motion", "finite_motion"],
+        ["finite_motion", "step_limit", "finite_motion"],
     ),
     row(
         "NaN in the energy of the gas",
         FILLING,
         NAN_GAS,
-        ["finite_motion", "step_limit", "pressure", "finite_motion"],
+        ["finite_motion", "step_limit", "pressure"],
     ),
-    row(
-        "a node elsewhere by an edge",
-        BAG,
-        FAR,
-        ["energy_source", "motion", "energy_source", "motion"],
-    ),
-    row(
-        "a node elsewhere by an edge",
-        FILLING,
-        FAR,
-        ["energy_source", "motion", "energy_source", "motion"],
-    ),
-    row(
-        "a node elsewhere by an edge",
-        SHEETS,
-        FAR,
-        ["energy_source", "motion", "energy_source", "motion"],
-    ),
+    row("a node elsewhere by an edge", BAG, FAR, ["energy_source", "motion", "energy_source"]),
+    row("a node elsewhere by an edge", FILLING, FAR, ["energy_source", "motion", "energy_source"]),
+    row("a node elsewhere by an edge", SHEETS, FAR, ["energy_source", "motion", "energy_source"]),
     row("a node elsewhere by a contact distance", SHEETS, THROUGH, always("motion")),
     row("a node elsewhere by a contact distance", CAPSULE, THROUGH, always("motion")),
     row(
         "creep strain zeroed",
         STRIP,
         NO_CREEP,
-        ["energy_ledger", "energy_ledger", "energy_ledger", "unseen 2"],
+        ["energy_ledger", "energy_ledger", "energy_ledger"],
     ),
     row("creep strain zeroed", BAG, NO_CREEP, always("unseen 1")),
     row("creep strain zeroed", FILLING, NO_CREEP, always("unseen 1")),
-    row("numerical stress zeroed", BAG, NO_NUMERICAL, ["unseen 3", "none", "unseen 3", "none"]),
+    row("numerical stress zeroed", BAG, NO_NUMERICAL, ["unseen 2", "none", "unseen 2"]),
     row("stale broad phase", SHEETS, Change::System(stop_search), always("passages")),
     row("stale broad phase", CAPSULE, Change::System(stop_search), always("passages")),
     row("a contact pair lost", TOUCHING, Change::System(lose_pair), always("passages")),

@@ -60,7 +60,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     name: "explicit",
     meaning: "central differences with the stable step",
     start: |system, state, workspace, cfl| Box::new(Explicit::start(system, state, workspace, cfl)),
-    lacks: &[],
+    has_friction: true,
     refuses: |_| None,
 };
 

@@ -34,7 +34,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     name: "hybrid",
     meaning: "explicit while film moves, implicit while it hardly does",
     start: |system, state, workspace, cfl| Box::new(Hybrid::start(system, state, workspace, cfl)),
-    lacks: implicit::ENTRY.lacks,
+    has_friction: implicit::ENTRY.has_friction,
     refuses: implicit::ENTRY.refuses,
 };
 
@@ -342,7 +342,7 @@ impl Integrator for Hybrid {
         let active = match self.active().stored()? {
             StoredIntegrator::Explicit(stored) => StoredActive::Explicit(Box::new(stored)),
             StoredIntegrator::Implicit(stored) => StoredActive::Implicit(stored),
-            StoredIntegrator::Hybrid(_) | StoredIntegrator::Xpbd(_) => return None,
+            StoredIntegrator::Hybrid(_) => return None,
         };
         let (policy, ordered_at) = (self.policy, self.ordered_at.clone());
         let quiet_start = self.quiet_start.clone();

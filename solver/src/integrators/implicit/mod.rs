@@ -14,7 +14,7 @@ use crate::collision::contact::SearchProgress;
 use crate::geometry::field::Field;
 use crate::integrators::energy_accounting::EnergyAccounting;
 use crate::integrators::interface::{Advance, Budget, Integrator, Interval, StepAudit, StepMotion};
-use crate::integrators::{ContactForce, IntegratorEntry, Refusal, StoredIntegrator};
+use crate::integrators::{IntegratorEntry, Refusal, StoredIntegrator};
 use crate::mechanics::forces::membrane::{NodeForces, stress_on_fraction};
 use crate::output::ledger::Ledger;
 use crate::output::outcome::{AuditKind, Failure};
@@ -48,7 +48,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
         let control = StepControl::error(cfl, system.model.size(), 1.0);
         Box::new(Implicit::start(system, state, workspace, control))
     },
-    lacks: &[ContactForce::Friction],
+    has_friction: false,
     refuses,
 };
 
@@ -93,7 +93,7 @@ pub struct Implicit {
     predicted: Field,
 }
 
-/// Why film cannot be integrated implicitly, but for contact; `None` if it can.
+/// Why film cannot be integrated implicitly, but for friction; `None` if it can.
 fn refuses(system: &FilmSystem) -> Option<Refusal> {
     let contact = system.contact.as_ref();
     let moving = |plates: &[Plate]| plates.iter().any(|plate| plate.motion.is_some());

@@ -12,12 +12,6 @@ pub const FILM_STRESS_99: (&str, &str, &str) = (
     "Pa",
     "stress that 99 % of the film's area does not exceed (largest principal second Piola-Kirchhoff stress)",
 );
-/// Track of an integrator that iterates: name, unit, meaning.
-const RESIDUAL: (&str, &str, &str) = (
-    "integrator_residual",
-    "1",
-    "what the last step left of the integrator's equations, relative to their terms",
-);
 /// Fraction of the area that reaches [`FILM_STRESS_99`].
 const ABOVE_99: f64 = 0.01;
 
@@ -57,10 +51,6 @@ pub(super) fn names(run: &FilmRun) -> Vec<Track> {
     let mut all: Vec<Track> = nodes.chain(elements).collect();
     let (name, unit, meaning) = FILM_STRESS_99;
     all.push(track(name.to_owned(), unit, meaning));
-    if run.view().residual().is_some() {
-        let (name, unit, meaning) = RESIDUAL;
-        all.push(track(name.to_owned(), unit, meaning));
-    }
     if run.rings.is_some() {
         let meaning = "velocity of the top centre node along z";
         all.push(track("vz_centre".to_owned(), "m/s", meaning));
@@ -88,7 +78,6 @@ pub(super) fn values(run: &FilmRun, values: &mut Vec<f64>) {
         values.extend(resultants(model, &state.positions, *element as usize).principal);
     }
     values.push(film.stress_on_fraction(ABOVE_99));
-    values.extend(film.residual());
     if let Some(rings) = &run.rings {
         values.push(state.velocities.z[rings.top_centre as usize]);
     }

@@ -345,7 +345,7 @@ mod tests {
                 column("model", texts(&["film"; 4])),
                 column("outputs.sample_interval", numbers(&[1, 1, 5, 5])),
                 column("film.numerical_damping", numbers(&[0, 1, 0, 1])),
-                column("integrator", texts(&["explicit", "hybrid", "xpbd", "xpbd"])),
+                column("integrator", texts(&["explicit", "hybrid", "implicit", "implicit"])),
                 column("status", texts(&["done"; 4])),
                 column("elements", numbers(&[768; 4])),
                 column("steps", numbers(&[1000; 4])),
@@ -357,7 +357,7 @@ mod tests {
             run.configuration.iter().map(|(name, _)| name.clone()).collect()
         };
         assert_eq!(names(&scenes[0].runs[0]), ["model", "film.numerical_damping", "integrator"]);
-        // xpbd ignores numerical damping: two equal runs are one.
+        // The implicit integrator ignores numerical damping: two equal runs are one.
         assert_eq!((scenes[0].runs.len(), scenes[1].runs.len()), (2, 1));
         assert_eq!(scenes[1].runs[0].configuration[1].1, Value::Null);
     }

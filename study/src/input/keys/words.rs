@@ -163,7 +163,7 @@ pub const MODELS: [Model; ModelKind::ALL.len()] = {
 /// Keys that change no result of film with the integrator of this name.
 pub fn ignored_by_integrator(name: &str) -> &'static [&'static str] {
     match INTEGRATORS.iter().find(|row| row.name == name).map(|row| row.value) {
-        Some(IntegratorKind::Implicit | IntegratorKind::Xpbd) => &["film.numerical_damping"],
+        Some(IntegratorKind::Implicit) => &["film.numerical_damping"],
         Some(IntegratorKind::Explicit | IntegratorKind::Hybrid) | None => &[],
     }
 }

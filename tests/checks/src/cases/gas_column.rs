@@ -30,11 +30,6 @@ pub fn rigid_vessel() -> Vec<FilmSupport> {
     vec![held([LOWER, UPPER].concat(), "xyz")]
 }
 
-/// Supports of a piston whose upper plate is film alone: it keeps its shape in its plane.
-pub fn film_piston() -> Vec<FilmSupport> {
-    vec![held(LOWER.to_vec(), "xyz"), held(UPPER.to_vec(), "xy")]
-}
-
 impl Column {
     /// Supports of a piston: the lower plate is held, the upper one is a rigid plane. Its mass (kg)
     /// includes the film of this area density (kg/m²). It moves along z, from this speed (m/s) on,

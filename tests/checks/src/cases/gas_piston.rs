@@ -13,9 +13,8 @@ use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply, IntegratorKind, Species};
-use nalgebra::Vector3;
 
-use super::gas_column::{Column, column, film_piston};
+use super::gas_column::column;
 use super::piston_model;
 use super::reference::{number, rows};
 use super::rig::{advance, inflow};
@@ -40,28 +39,11 @@ impl Piston {
         let column = column(self.area, self.height);
         let filling =
             Filling::Gas { supply: self.supply.clone(), initial_temperature: self.temperature };
-        let mut scene = if self.integrator == IntegratorKind::Xpbd {
-            self.heavy_film(&column)
-        } else {
-            let film = Film { ..Film::PAPER_ELASTIC };
-            let supports = column.piston(self.mass, film.area_density(), self.speed, self.force);
-            FilmScene { supports, ..free_film(column.shell, film) }
-        };
-        scene.filling = filling;
+        let film = Film { ..Film::PAPER_ELASTIC };
+        let supports = column.piston(self.mass, film.area_density(), self.speed, self.force);
+        let mut scene = FilmScene { supports, filling, ..free_film(column.shell, film) };
         (scene.solver.cfl, scene.solver.integrator) = (self.cfl, self.integrator);
         rig.start(&scene)
-    }
-
-    /// The plate as film that has its mass, for xpbd, which has no rigid planes. The pressure moves all of it alike, so
-    /// it stays plane and unstrained.
-    fn heavy_film(&self, column: &Column) -> FilmScene {
-        let mut film = Film { ..Film::PAPER_ELASTIC };
-        film.density = self.mass / (self.area * film.thickness);
-        let shell = column.shell.clone();
-        let speed = |x: &Vector3<f64>| if x.z > 0.0 { self.speed } else { 0.0 };
-        let velocities = shell.positions.iter().map(|x| Vector3::z() * speed(x)).collect();
-        let supports = film_piston();
-        FilmScene { supports, velocities, ..free_film(shell, film) }
     }
 }
 

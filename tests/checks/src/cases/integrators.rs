@@ -75,7 +75,7 @@ pub(super) fn piston(rig: &Rig) -> Outcome {
 fn vibration_step(kind: IntegratorKind, step: f64) -> Step {
     match kind {
         IntegratorKind::Implicit => Step::Samples(1.0 / step),
-        IntegratorKind::Explicit | IntegratorKind::Hybrid | IntegratorKind::Xpbd => Step::Cfl(step),
+        IntegratorKind::Explicit | IntegratorKind::Hybrid => Step::Cfl(step),
     }
 }
 

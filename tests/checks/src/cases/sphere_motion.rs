@@ -88,12 +88,6 @@ pub fn breathing_frequency(
     interval: Option<f64>,
 ) -> Result<f64, String> {
     let interval = interval.unwrap_or(film.view().next_step());
-    if film.settings().integrator == IntegratorKind::Xpbd {
-        // Its film is softer, so the sphere breathes about another volume.
-        let found = extrema(film, interval, HALF_PERIODS + 1, |film| film.state.volume)?;
-        let time = found[HALF_PERIODS].time - found[0].time;
-        return Ok(0.5 * HALF_PERIODS as f64 / time);
-    }
     frequency(film, interval, HALF_PERIODS + 1, |film| film.state.volume - volume)
 }
 

@@ -14,11 +14,10 @@ const CELLS: [u32; 5] = [4, 8, 16, 32, 64];
 /// Name of the search by Newton's method beside the integrators.
 const STATIC_SEARCH: &str = "static search";
 /// Integrators, CFL numbers and finest meshes with which the airbag is brought to rest by damped motion.
-const RELAXATIONS: [(IntegratorKind, f64, u32); 4] = [
+const RELAXATIONS: [(IntegratorKind, f64, u32); 3] = [
     (IntegratorKind::Explicit, 0.9, 32),
     (IntegratorKind::Implicit, 0.9, 32),
     (IntegratorKind::Hybrid, 0.9, 4),
-    (IntegratorKind::Xpbd, 0.1, 16),
 ];
 
 /// Two squares sewn together and inflated. No closed form is known: the finest mesh is the reference. The search by

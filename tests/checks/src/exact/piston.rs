@@ -12,14 +12,10 @@ use crate::cases::{Rig, gas_piston, piston_model};
 
 /// CFL numbers of the injected piston: each halves the step.
 const PISTON_CFL: [f64; 7] = [0.64, 0.32, 0.16, 0.08, 0.04, 0.02, 0.01];
-/// Number of them at which the explicit integrator, the implicit one, xpbd and the hybrid run. The last never leaves its
+/// Number of them at which the explicit integrator, the implicit one and the hybrid run. The last never leaves its
 /// explicit steps here, so one run shows it.
-const PISTON_RUNS: [(IntegratorKind, usize); 4] = [
-    (IntegratorKind::Explicit, 7),
-    (IntegratorKind::Implicit, 6),
-    (IntegratorKind::Xpbd, 5),
-    (IntegratorKind::Hybrid, 1),
-];
+const PISTON_RUNS: [(IntegratorKind, usize); 3] =
+    [(IntegratorKind::Explicit, 7), (IntegratorKind::Implicit, 6), (IntegratorKind::Hybrid, 1)];
 /// Tolerances of the model piston.
 const TOLERANCES: [f64; 6] = [1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13];
 /// Fixed steps of the model piston, s.

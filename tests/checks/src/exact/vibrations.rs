@@ -13,8 +13,6 @@ use crate::cases::{Rig, drum, sphere_motion};
 const SPHERE_LEVELS: [u32; 5] = [1, 2, 3, 4, 5];
 /// CFL numbers of sphere and disc.
 const CFL: [f64; 3] = [0.225, 0.45, 0.9];
-/// CFL numbers of xpbd, whose substep is four times as long. Chosen: at larger ones its film is far too soft.
-const XPBD_CFL: [f64; 2] = [0.1, 0.025];
 /// Samples a period of the implicit integrator: they bound its steps. Its error control allows longer ones, because the
 /// amplitude is far below the error it allows.
 const IMPLICIT_SAMPLES: [u32; 2] = [100, 400];
@@ -59,7 +57,6 @@ fn vibrations(all: &[u32], scene: usize) -> Vec<Vibration> {
             ..run(*mesh, IntegratorKind::Implicit, CFL[1])
         };
         found.extend(IMPLICIT_SAMPLES.map(implicit));
-        found.extend(XPBD_CFL.map(|cfl| run(*mesh, IntegratorKind::Xpbd, cfl)));
     }
     found.push(run(finest_of_others, IntegratorKind::Hybrid, CFL[1]));
     found
