@@ -226,14 +226,10 @@ fn saving(study: &Study, table: &MeshErrors, cost_of_method: f64) -> String {
     let runs_of_one = study.meshes().len().max(1) as f64;
     let all: f64 = points.iter().map(|point| cost(table, &Method::of(&point.scene))).sum();
     let now = all * runs_of_one / points.len().max(1) as f64;
-    let now_is = match study.auto() {
-        Some(auto) => format!("all points on n {}; auto runs fewer there", auto.reference),
-        None => "now".to_owned(),
-    };
     if cost_of_method < now {
-        format!("{:.1} times cheaper than {now_is}", now / cost_of_method)
+        format!("{:.1} times cheaper than now", now / cost_of_method)
     } else {
-        format!("{:.1} times the cost of {now_is}", cost_of_method / now)
+        format!("{:.1} times the cost of now", cost_of_method / now)
     }
 }
 

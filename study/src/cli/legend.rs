@@ -4,13 +4,11 @@
 use std::fmt::Write as _;
 
 use super::print::count;
-use crate::accuracy::{NO_ERROR_REASON, PROMISED, Promised};
+use crate::accuracy::{NO_ERROR_REASON, PROMISED};
 use crate::analysis::replicates::is_mesh;
 use crate::input::value::Value;
 use crate::store::table::NOT_DEPLOYED;
 use crate::store::table::Table;
-use crate::store::table::corrected::RUN_MESH;
-use crate::study::Study;
 
 /// What is between a value and its mesh error.
 pub const PLUS_MINUS: &str = " ± ";
@@ -78,26 +76,6 @@ pub fn mesh_errors(shown: bool, table: &Table, meshes: &[u32]) -> Vec<String> {
         );
     }
     notes
-}
-
-/// What the rows of a study with `"model": "auto"` are; `None` for another study.
-pub fn corrected(study: &Study, table: &Table) -> Option<String> {
-    let reference = study.auto()?.reference;
-    let coarser = |row: usize| {
-        let mesh = table.column(RUN_MESH).map(|column| &column.cells[row]);
-        let is_coarser = matches!(mesh, Some(Value::Integer(n)) if *n < i64::from(reference));
-        let has_value = |promised: &Promised| {
-            table.value(promised.measure, row).is_some_and(|value| *value != Value::Null)
-        };
-        is_coarser && PROMISED.iter().any(has_value)
-    };
-    (0..table.rows()).any(coarser).then(|| {
-        let names = estimated_names();
-        format!(
-            "auto: {names} are corrected to n {reference}; all else is as the run on {RUN_MESH} gave it (table --runs: \
-             the runs)"
-        )
-    })
 }
 
 /// The measures that are extrapolated or corrected.

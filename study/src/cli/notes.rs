@@ -109,21 +109,14 @@ fn errors(study: &Study, method: &Method, tolerances: &Tolerances) -> Result<Str
     Ok(format!(": {errors}; cost {:.1} % of n 24", 100.0 * choice.cost))
 }
 
-/// The errors of values from several meshes, and of the mesh to which `auto` corrects; why there are none.
+/// The errors of values from several meshes, or why there are none.
 fn of_meshes(study: &Study) -> Option<String> {
     let meshes = study.meshes();
-    let (name, meshes) = match (study.auto(), meshes.as_slice()) {
-        (Some(auto), _) => (
-            format!("accuracy is that against n {}, which has", auto.reference),
-            vec![auto.reference],
-        ),
-        (None, [.., next, finest]) => ("solver.meshes gives".to_owned(), vec![*next, *finest]),
-        (None, _) => return None,
-    };
-    let method = Method { model: ModelKind::Film, meshes };
+    let [.., next, finest] = meshes[..] else { return None };
+    let method = Method { model: ModelKind::Film, meshes: vec![next, finest] };
     let all = all_but_peak_vz(Some(0.0));
     Some(match errors(study, &method, &all) {
-        Ok(errors) => format!("note: {name} the errors of {}{errors}", method.name()),
+        Ok(errors) => format!("note: solver.meshes gives the errors of {}{errors}", method.name()),
         Err(gap) if study.meshes().len() == 2 => {
             format!("note: two meshes give no errors here ({gap}); three meshes do")
         }

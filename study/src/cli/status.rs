@@ -6,14 +6,12 @@ use std::num::NonZero;
 
 use serde_json::json;
 
-use super::answer::{auto, judged};
 use super::options::{OutputOptions, ThreadsOption};
 use super::print::{TopicLine, count, duration, points_of_runs, print_rows};
 use super::queue::Workers;
 use super::run::listed;
 use super::target::{StudyArgs, folder};
 use super::{Format, changes, output_error};
-use crate::analysis::answer::AutoAnswer;
 use crate::input::value::brief_number;
 use crate::job::row::{ColumnId, Counts};
 use crate::job::{JobId, Status as JobStatus};
@@ -44,7 +42,6 @@ struct Status<'a> {
     health: &'a Health,
     /// Number of runs planned.
     runs: usize,
-    auto: Option<AutoAnswer>,
     counts: Counts,
     /// Number of jobs that must run again.
     invalidated: usize,
@@ -111,7 +108,6 @@ impl<'a> Status<'a> {
             study: &stored.study,
             health,
             runs: stored.planned_runs(),
-            auto: AutoAnswer::of(stored),
             counts,
             invalidated: stored.journal.invalidated.len(),
             other_physics: other_physics(&stored.points, &stored.journal.records),
@@ -143,7 +139,6 @@ impl<'a> Status<'a> {
             "results": self.results.root().display().to_string(),
             "running": self.health.running,
             "points": self.runs,
-            "auto": self.auto.as_ref().map(judged::auto),
             "jobs": counts.jobs(),
             "done": counts.of(JobStatus::Done),
             "failed": counts.failed(),
@@ -206,11 +201,6 @@ impl<'a> Status<'a> {
         };
         let mut lines =
             vec![("points", format!("{points}: {jobs}, {infeasible} infeasible{duplicates}"))];
-        let mut topic = "auto";
-        for text in self.auto.iter().flat_map(auto::lines) {
-            lines.push((topic, text));
-            topic = "";
-        }
         let invalidated = match self.invalidated {
             0 => String::new(),
             number => format!(" ({number} invalidated)"),

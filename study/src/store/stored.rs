@@ -16,7 +16,6 @@ use crate::store::finished;
 use crate::store::journal::{self, Journal, Record};
 use crate::store::results::Results;
 use crate::store::table::Table;
-use crate::study::auto::Outcome;
 use crate::study::finished::FinishedRow;
 use crate::study::plan;
 use crate::study::{Border, Study};
@@ -89,11 +88,6 @@ impl<'a> Stored<'a> {
 
     /// The table, built from plan and journal: one row per point, also for points that share a job.
     pub fn table(&self) -> Table {
-        Table::of_study(&self.study, &self.points, &self.journal.records).shown_in(&self.units)
-    }
-
-    /// The table of all runs. It differs from [`Self::table`] in a study with pilots.
-    pub fn runs_table(&self) -> Table {
         self.built(&self.points)
     }
 
@@ -105,26 +99,15 @@ impl<'a> Stored<'a> {
 
     /// The table of these points, shown in the study's units.
     fn built(&self, points: &[Point]) -> Table {
-        Table::of_runs(&self.study, points, &self.journal.records).shown_in(&self.units)
+        Table::of_study(&self.study, points, &self.journal.records).shown_in(&self.units)
     }
 
     fn finished(&self) -> Vec<FinishedRow> {
         finished::rows(&self.points, &self.journal.records, self.study.result_limits())
     }
 
-    /// What the pilots and the checks of the study say; `None` for a study without.
-    pub fn outcome(&self) -> Option<Outcome> {
-        self.study.auto()?;
-        let finished = self.finished();
-        plan::shown(&self.study, &finished).map(|(_, outcome)| outcome)
-    }
-
-    /// Number of runs planned so far, one for each replicate of a point, also of those that share a job. With pilots it
-    /// is that of the study: the runs of a point on several meshes are one.
+    /// Number of runs planned so far, one for each replicate of a point, also of those that share a job.
     pub fn planned_runs(&self) -> usize {
-        if self.study.auto().is_some() {
-            return self.study.points().len();
-        }
         self.points.iter().map(|point| 1 + point.merged.len()).sum()
     }
 

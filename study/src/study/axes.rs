@@ -19,8 +19,6 @@ pub enum NoProduct {
     NoAxes,
     /// A search chooses its points.
     Search,
-    /// Pilots choose its runs (`"model": "auto"`).
-    Pilots,
     /// It has single points (`grid.points`).
     SinglePoints,
 }
@@ -31,7 +29,6 @@ impl NoProduct {
         match self {
             Self::NoAxes => "varies nothing",
             Self::Search => "has a search, which chooses its points",
-            Self::Pilots => "has pilots, which choose its runs",
             Self::SinglePoints => "has single points (grid.points)",
         }
     }
@@ -44,9 +41,6 @@ impl Study {
     /// # Errors
     /// Why its points are no product of axes.
     pub fn grid_axes(&self) -> Result<Vec<GridAxis>, NoProduct> {
-        if self.auto.is_some() {
-            return Err(NoProduct::Pilots);
-        }
         if self.grid.search.is_some() {
             return Err(NoProduct::Search);
         }

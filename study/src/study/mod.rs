@@ -7,7 +7,6 @@
 //! Every error of a study is found here, before anything runs.
 
 mod accuracy;
-pub mod auto;
 mod axes;
 mod base;
 mod expand;
@@ -47,7 +46,6 @@ use crate::job::limits::JobLimits;
 use crate::job::result_limit::ResultLimit;
 use crate::platform::error::{InputError, Result as BillowResult};
 use accuracy::{ACCURACY, Accuracy};
-use auto::Auto;
 pub use axes::{GridAxis, NoProduct};
 use base::Base;
 use expand::Points;
@@ -89,8 +87,6 @@ pub struct Study {
     result_limits: Vec<ResultLimit>,
     /// The errors that its results must keep.
     accuracy: Option<Accuracy>,
-    /// The plan of pilots and coarse runs, if it asks for one.
-    auto: Option<Auto>,
     /// Its points, resolved when something asks for them.
     points: OnceLock<Points>,
 }
@@ -152,10 +148,6 @@ impl Study {
             return Err(InputError { hint: format!("billow solve {file}"), ..error });
         }
         let notes = overrides::apply(&mut tree, sets, &STUDY, &mut source)?;
-        let is_auto = auto::is_auto(&tree);
-        if is_auto {
-            auto::replace_model(&mut tree);
-        }
         let base = Base::read(&tree, &source)?;
         let result_limits = result_limits::read(tree.get(LIMITS), &source)?;
         let context = Context { base: &base, limits: &result_limits, source: &source, size };
@@ -165,7 +157,7 @@ impl Study {
         let mut accuracy = Accuracy::read(tree.get(ACCURACY), &source)?;
         let mut base = base;
         let mut points = expand::points(&base, &grid, &source, size)?;
-        let chooses = accuracy.as_mut().filter(|accuracy| accuracy.meshes.is_empty() && !is_auto);
+        let chooses = accuracy.as_mut().filter(|accuracy| accuracy.meshes.is_empty());
         if let Some(accuracy) = chooses {
             accuracy::refuse_given_mesh(&tree, &source)?;
             accuracy.choose(&points.points, &source)?;
@@ -176,12 +168,6 @@ impl Study {
             points = expand::points(&base, &grid, &source, size)?;
         }
         meshes::refuse_other_models(&grid, &points.points, &source)?;
-        let auto = if is_auto {
-            let repeats = grid.repeated();
-            Some(Auto::of(accuracy.as_ref(), &grid, &points.points, &repeats, &source)?)
-        } else {
-            None
-        };
         let name = study_name(&base, stem, &source)?;
         let (question, warnings) = (question(&base), source.warnings());
         Ok(Self {
@@ -194,7 +180,6 @@ impl Study {
             grid,
             result_limits,
             accuracy,
-            auto,
             points: points.into(),
         })
     }
@@ -209,17 +194,12 @@ impl Study {
         self.grid.repeated()
     }
 
-    /// The plan of pilots and coarse runs; `None` for a study that names its model.
-    pub fn auto(&self) -> Option<&Auto> {
-        self.auto.as_ref()
-    }
-
     /// The meshes from which the values of each point are extrapolated, coarsest first; empty without any.
     pub fn meshes(&self) -> Vec<u32> {
         self.grid.meshes()
     }
 
-    /// The meshes that `accuracy` chose, coarsest first; `None` without it, and with the model auto.
+    /// The meshes that `accuracy` chose, coarsest first; `None` without it.
     pub(crate) fn chosen_meshes(&self) -> Option<&[u32]> {
         let meshes = self.accuracy.as_ref().map(|accuracy| accuracy.meshes.as_slice());
         meshes.filter(|meshes| !meshes.is_empty())
@@ -282,9 +262,6 @@ impl Study {
             && let Some(solver) = json.get_mut("solver")
         {
             solver.set("meshes", Json::List(meshes));
-        }
-        if self.auto.is_some() {
-            auto::write_model(&mut json);
         }
         let grid = self.grid.resolved();
         if grid != Json::Object(Vec::new()) {

@@ -2,7 +2,6 @@
 
 use super::Study;
 use super::target::{self, Section};
-use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::keys::{self, KEYS, Key};
 use crate::input::source::Source;
 use crate::input::study_file::Json;
@@ -34,12 +33,6 @@ impl Study {
     /// Names of the varied parameters, in the order of [`crate::job::Job::parameters`].
     pub fn parameter_names(&self) -> Vec<String> {
         self.grid.columns.iter().map(|column| column.name.clone()).collect()
-    }
-
-    /// Names of the parameters of its runs: with pilots the mesh is one more.
-    pub fn run_parameter_names(&self) -> Vec<String> {
-        let mesh = self.auto.as_ref().map(|_| MESH_PARAMETER.to_owned());
-        self.parameter_names().into_iter().chain(mesh).collect()
     }
 
     /// Dotted paths of the varied parameters, in the same order.

@@ -1,14 +1,13 @@
 //! The jobs of a study.
 //!
 //! Planning is a pure function of the study and its finished rows. A plain grid has one generation; a
-//! search has several, and one with `"model": "auto"` two. A resumed study replays them.
+//! search has several. A resumed study replays them.
 
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
 
 use crate::job::point::Point;
 use crate::job::{Job, JobId};
-use crate::study::auto::Outcome;
 use crate::study::finished::FinishedRow;
 use crate::study::search::replay::Replay;
 use crate::study::{Border, Study, StudyPoint};
@@ -59,8 +58,7 @@ impl PlanCounts {
 /// finished rows, in any order, give the same generation.
 ///
 /// A generation is planned whole while any of its jobs has no finished row; the runner leaves out the
-/// finished ones. A grid has one generation, a search one more each time its jobs have ended, a study with
-/// pilots a second one. Infeasible
+/// finished ones. A grid has one generation, a search one more each time its jobs have ended. Infeasible
 /// points have no job to finish. Without any finished row the first generation is always given, so that a
 /// study of infeasible points gets its rows.
 pub fn next_jobs(study: &Study, finished: &[FinishedRow]) -> Option<Generation> {
@@ -69,16 +67,9 @@ pub fn next_jobs(study: &Study, finished: &[FinishedRow]) -> Option<Generation> 
         let mut jobs = generation.points.iter().filter(|point| point.infeasible.is_none());
         jobs.any(|point| !ids.contains(&point.job.id))
     };
-    let mut generation = match study.auto() {
-        Some(auto) => generation(0, &auto.first_points(study.points())),
-        None => generation(0, study.points()),
-    };
+    let mut generation = generation(0, study.points());
     if is_open(&generation) || finished.is_empty() {
         return Some(generation);
-    }
-    if let Some(auto) = study.auto() {
-        let points = auto.other_points(study.points(), finished)?;
-        return Some(self::generation(1, &points)).filter(is_open);
     }
     let mut replay = Replay::new(study, finished)?;
     loop {
@@ -124,14 +115,6 @@ pub fn borders(study: &Study, finished: &[FinishedRow]) -> Vec<Border> {
         }
         replay.add(&points);
     }
-}
-
-/// The runs that the rows of a study with pilots show, one per point.
-pub fn shown(study: &Study, finished: &[FinishedRow]) -> Option<(Vec<Point>, Outcome)> {
-    let auto = study.auto()?;
-    let outcome = auto.outcome(study.points(), finished);
-    let points = auto.shown(study.points(), &outcome);
-    Some((generation(0, &points).points, outcome))
 }
 
 /// A generation of these points. Points with the same job are merged into the first of them.

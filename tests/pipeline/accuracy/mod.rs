@@ -2,7 +2,6 @@
 
 mod advice;
 mod meshes;
-mod pilots;
 
 use std::process::Output;
 

@@ -18,7 +18,6 @@ use crate::job::row::{ColumnId, Counts, HEADLINE};
 use crate::store::stored::Stored;
 use crate::store::table::Table;
 
-mod auto;
 mod effects;
 mod medians;
 mod pairwise;
@@ -27,7 +26,6 @@ mod safety;
 mod searches;
 mod trust;
 
-pub use auto::{AutoAnswer, Kept};
 pub use effects::{Effect, Effects, MeasureEffect};
 pub use medians::Extremes;
 pub(super) use medians::{Set, block};
@@ -38,7 +36,7 @@ pub use safety::{PointMargin, SafeBy, SafeCounts, SafeValue, Safety};
 pub use searches::{Found, Searches};
 pub use trust::Trust;
 
-/// The answer of a study. It is stored without `auto` and `searches`, for studies that have neither.
+/// The answer of a study. It is stored without `searches`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Answer {
     /// The question, as the study file has it.
@@ -68,9 +66,6 @@ pub struct Answer {
     pub choice: Option<String>,
     /// Each pair of its values.
     pub pairwise: Vec<Versus>,
-    /// Which mesh the points of a study with `"model": "auto"` have, and whether that keeps its promise.
-    #[serde(skip)]
-    pub auto: Option<AutoAnswer>,
     /// What the searches of borders found.
     #[serde(skip)]
     pub searches: Option<Searches>,
@@ -118,7 +113,6 @@ impl Answer {
             answer.choice = Some(choice.name.clone());
             answer.pairwise = pairwise::pairwise(&points, &choice.name, &zipped);
         }
-        answer.auto = AutoAnswer::of(stored);
         answer.searches = Searches::of(stored, table);
         answer
     }

@@ -7,7 +7,7 @@ use crate::analysis::answer::{Answer, Depends, Effect, Extreme, Extremes, PointC
 use crate::input::value::json_value;
 use crate::job::row::HEADLINE;
 
-pub mod judged;
+mod judged;
 
 /// The answer as JSON keys.
 pub fn json(answer: &Answer) -> serde_json::Value {
@@ -30,7 +30,6 @@ pub fn json(answer: &Answer) -> serde_json::Value {
             "parameter": answer.choice,
             "pairs": answer.pairwise.iter().map(judged::versus).collect::<Vec<_>>(),
         },
-        "auto": answer.auto.as_ref().map(judged::auto),
         "borders": answer.searches.as_ref().map(judged::searches),
     })
 }

@@ -15,14 +15,13 @@ use crate::input::value::{Value, brief_number};
 use crate::job::Status;
 use crate::job::row::{ColumnId, HEADLINE};
 
-pub mod auto;
 mod border;
 mod effects;
 mod json;
 mod pairwise;
 mod safe;
 
-pub use json::{json, judged};
+pub use json::json;
 
 /// Characters before the text of a line: two spaces, the topic, a space.
 const TOPIC_WIDTH: usize = 11;
@@ -58,11 +57,6 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     // The border is what a study with a search asks for, so it stands before the single jobs.
     let mut topic = "border";
     for line in answer.searches.iter().flat_map(border::lines) {
-        print_topic(topic, &line, out)?;
-        topic = "";
-    }
-    let mut topic = "auto";
-    for line in answer.auto.iter().flat_map(auto::lines) {
         print_topic(topic, &line, out)?;
         topic = "";
     }

@@ -6,7 +6,7 @@ use super::opened::open_stored;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::points::{Points, chosen_runs};
 use super::target::{StudyArgs, find};
-use super::{Format, legend, output_error};
+use super::{Format, output_error};
 use crate::analysis::compare::{self, Measure, Pair, Sets, Tolerance, measures_with};
 use crate::input::fraction::fraction;
 use crate::input::value::Value;
@@ -147,9 +147,6 @@ fn print(args: &Args, stored: &Stored<'_>, table: &Table, out: &mut dyn Write) -
     }
     if !args.quiet.quiet {
         comparison.print_notes(&base, &alone);
-        if let Some(note) = legend::corrected(&stored.study, table) {
-            eprintln!("{note}");
-        }
     }
     Ok(())
 }

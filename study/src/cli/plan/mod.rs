@@ -117,7 +117,7 @@ fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generati
         eprintln!("{text}");
     }
     let references = results.references().states.into_iter().map(|(id, _)| id).collect();
-    let cost = forecast(&missing, references, study.searched().is_some() || study.auto().is_some());
+    let cost = forecast(&missing, references, study.searched().is_some());
     cost.into_iter().chain(memory.forecast(study)).for_each(|text| eprintln!("{text}"));
     Ok(())
 }
@@ -137,7 +137,7 @@ fn si_unit(study: &Study, name: &str) -> Option<String> {
 
 /// The columns, each with the unit in which it is shown.
 fn headings(study: &Study, units: &DisplayUnits) -> Vec<Heading> {
-    let parameters = study.run_parameter_names();
+    let parameters = study.parameter_names();
     let mut headings = vec![Heading::plain("job")];
     headings.extend(
         parameters

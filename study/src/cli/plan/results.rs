@@ -21,8 +21,7 @@ const FILM_ONLY: [ColumnId; 7] = [
 
 /// What a reader of the plan must know of its searches and limits.
 pub(super) fn notes(study: &Study, counts: &PlanCounts) -> Vec<String> {
-    let mut notes: Vec<String> =
-        search(study, counts).into_iter().chain(auto(study, counts)).collect();
+    let mut notes: Vec<String> = search(study, counts).into_iter().collect();
     notes.extend(limits(study));
     notes
 }
@@ -37,22 +36,6 @@ fn search(study: &Study, counts: &PlanCounts) -> Option<String> {
         "search: {} along {name}; first generation {}; up to {more} more per search",
         count(searches.len(), "search"),
         count(counts.jobs, "job"),
-    ))
-}
-
-/// What the pilots run on, and what follows.
-fn auto(study: &Study, counts: &PlanCounts) -> Option<String> {
-    let auto = study.auto()?;
-    let meshes: Vec<String> = auto.rungs.iter().map(ToString::to_string).collect();
-    let others = counts.points.saturating_sub(counts.infeasible + auto.pilots.len());
-    Some(format!(
-        "auto: {} on n {} and {} first ({}); then {} on the coarsest of these meshes that keeps the accuracy, a tenth of \
-         them also on the next finer mesh of the table of mesh errors",
-        count(auto.pilots.len(), "pilot"),
-        auto.reference,
-        meshes.join(", "),
-        count(counts.jobs, "job"),
-        count(others, "point"),
     ))
 }
 

@@ -8,7 +8,6 @@ use crate::cli::{Format, range};
 use crate::input::value::Value;
 use crate::job::row::{ColumnId, DerivedColumn};
 use crate::platform::error::Result;
-use crate::store::table::corrected::RUN_MESH;
 use crate::store::table::{Column, Table};
 
 /// The parameter whose values are compared for how gentle they are.
@@ -22,7 +21,6 @@ pub const MARGIN: &str = "margin_";
 pub fn main_names(table: &Table) -> Vec<&str> {
     let mut names: Vec<&str> = vec![
         ColumnId::Status.name(),
-        RUN_MESH,
         ColumnId::Verdict.name(),
         DerivedColumn::Safe.name(),
         DerivedColumn::SmallestMargin.name(),

@@ -11,7 +11,6 @@ use crate::input::keys::numerical::SEED;
 use crate::input::value::Value;
 use crate::job::row::{ColumnId, SAME_JOB_AS};
 use crate::platform::error::Result;
-use crate::store::stored::Stored;
 use crate::store::table::Table;
 use crate::study::Study;
 use columns::{chosen, heading, shown};
@@ -82,9 +81,6 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let asked = asked(args);
     let mut target = target::open(&args.study, &args.set.set, &args.units)?;
     let all_columns = target.table.columns.len();
-    if args.runs && target.study.as_ref().is_some_and(|study| study.auto().is_some()) {
-        target.table = Stored::read(target.results.clone())?.runs_table();
-    }
     target.add_keys(&asked, args.condition.as_deref())?;
     let Target { study, table, .. } = target;
     print(args, study.as_ref(), &table, all_columns, out)
@@ -105,8 +101,6 @@ fn print(
     all_columns: usize,
     out: &mut dyn Write,
 ) -> Result<()> {
-    let corrected = study.and_then(|study| legend::corrected(study, table));
-    let corrected = corrected.filter(|_| !args.runs);
     let replicates = match study {
         Some(study) if !args.runs => study.replicates(),
         _ => Vec::new(),
@@ -143,7 +137,7 @@ fn print(
         }
         let shown = listing.cells.iter().flatten().any(legend::has_mesh_error);
         let meshes = if args.runs { Vec::new() } else { meshes };
-        for note in legend::mesh_errors(shown, table, &meshes).into_iter().chain(corrected) {
+        for note in legend::mesh_errors(shown, table, &meshes) {
             eprintln!("{note}");
         }
         best::print(study, table, &rows);

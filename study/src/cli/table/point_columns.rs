@@ -9,7 +9,6 @@ use crate::cli::target::find;
 use crate::input::value::Value;
 use crate::job::row::{ColumnId, DerivedColumn};
 use crate::platform::error::{Error, Result};
-use crate::store::table::corrected::RUN_MESH;
 use crate::store::table::{Column, Table};
 
 /// A column with its cells as printed.
@@ -115,8 +114,6 @@ fn main_columns(points: &Points<'_>, sort: &[String]) -> Vec<Printed> {
     let table = &points.table;
     let mut columns: Vec<&Column> = table.parameters().collect();
     columns.extend(sorting(table, sort, &columns));
-    let of_run = table.column(RUN_MESH);
-    columns.extend(of_run.filter(|column| columns.iter().all(|known| known.name != column.name)));
     let first: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
     let of = DerivedColumn::SmallestMarginOf.name();
     let mut always = vec![

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::draft::Draft;
 use super::quantity::{Quantity, integer};
-use super::words::{AUTO, MODEL, Word};
+use super::words::Word;
 use crate::input::study_file::Json;
 use crate::input::units::Dimension;
 use crate::input::value::Value;
@@ -257,14 +257,7 @@ impl Key {
                             .to_owned(),
                     );
                 }
-                // A study file can leave the model of its runs to pilots.
-                let auto = (self.path == MODEL).then_some(AUTO);
-                let hint = match nearest(text, names(words).chain(auto)) {
-                    Some(AUTO) => {
-                        format!(
-                            "; {AUTO:?} can stand in the section solver of a study file, and nowhere else"
-                        )
-                    }
+                let hint = match nearest(text, names(words)) {
                     Some(near) => format!("; did you mean {near:?}?"),
                     None => String::new(),
                 };

@@ -5,7 +5,7 @@
 
 use super::study::KEYS;
 use super::table::find;
-pub use super::words::{AUTO, INTEGRATOR, MODEL};
+pub use super::words::{INTEGRATOR, MODEL};
 
 /// Paths of the numerical keys.
 pub const NUMERICAL: [&str; 10] = [

@@ -47,8 +47,7 @@ pub(crate) const STRUCTURED: &[(&str, &str)] = &[
         "accuracy",
         "Relative errors that the results must keep, as in {\"t_90_z_rim\": 0.02}: t_50_z_rim, t_90_z_rim, peak_vz, \
          peak_kinetic_energy, final_z_rim, final_volume; one number is for all but peak_vz. The cheapest mesh, or two \
-         (solver.meshes), follow from the table of mesh errors; study.json adds `meshes`, the choice. With the model \
-         auto the errors are those against design.subdivisions.",
+         (solver.meshes), follow from the table of mesh errors; study.json adds `meshes`, the choice.",
     ),
     (
         "solver.meshes",
@@ -260,8 +259,7 @@ pub static KEYS: &[Key] = &[
         .study_only(),
 
     key("solver.model", KeyKind::Choice(&words(&MODEL_KINDS)), Word("film"), "\"piston\"",
-        "Which model computes the job. A study file can also say auto: a few pilots run on design.subdivisions, the \
-         other points on the coarsest mesh that keeps `accuracy`.")
+        "Which model computes the job.")
         .to(|draft, value| choose(&mut draft.scene.solver.model, &MODEL_KINDS, value))
         .study_only(),
     key("solver.integrator", KeyKind::Choice(&words(&INTEGRATORS)), Word("explicit"), "\"explicit\"",

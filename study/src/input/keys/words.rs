@@ -12,9 +12,6 @@ use crate::input::value::Value;
 pub const MODEL: &str = "solver.model";
 /// The key of the integrator of film.
 pub const INTEGRATOR: &str = "solver.integrator";
-/// What a study file can have in place of a model: pilots choose the mesh of its runs.
-pub const AUTO: &str = "auto";
-
 /// How residual gas enters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ResidualGas {

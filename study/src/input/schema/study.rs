@@ -36,10 +36,6 @@ pub fn study_schema() -> Json {
         let mut schema = definitions.section(&STUDY, section, &property);
         if *section == "solver" {
             schema["properties"]["meshes"] = meshes();
-            let models = schema["properties"]["model"].take();
-            let title = models["title"].clone();
-            schema["properties"]["model"] =
-                json!({"title": title, "anyOf": [models, {"const": "auto"}]});
         }
         properties.insert((*section).to_owned(), schema);
     }

@@ -2,13 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use super::corrected::RUN_MESH;
 use super::extrapolated::is_extrapolated;
 use super::{Column, Table};
-use crate::accuracy::promised::promise;
 use crate::accuracy::{NO_ERROR_REASON, is_error_column};
 use crate::input::value::Value;
-use crate::job::row::{COLUMNS, ColumnId, RowColumn};
+use crate::job::row::{COLUMNS, ColumnId};
 use crate::job::{JobId, Status};
 use crate::platform::provenance::PHYSICS_VERSION;
 use crate::store::journal::Record;
@@ -22,21 +20,13 @@ pub fn agrees(table: &Table, records: &BTreeMap<JobId, Record>) -> bool {
         let record = JobId::from_digits(job).and_then(|id| records.get(&id));
         match (table.status(row), record) {
             (Some(Status::Infeasible | Status::Pending), None) => true,
-            (Some(_), Some(record)) => {
-                let of_record = |column: &&RowColumn| !is_corrected(table, column.name);
-                COLUMNS.iter().filter(of_record).all(|column| {
-                    let stored = table.value(column.id, row);
-                    stored.is_none_or(|stored| same(stored, record.cells.get(column.id)))
-                })
-            }
+            (Some(_), Some(record)) => COLUMNS.iter().all(|column| {
+                let stored = table.value(column.id, row);
+                stored.is_none_or(|stored| same(stored, record.cells.get(column.id)))
+            }),
             (None, _) | (_, None) => false,
         }
     })
-}
-
-/// Whether a column of a table with corrected values holds no value of a run.
-fn is_corrected(table: &Table, name: &str) -> bool {
-    promise(name).is_some() && table.column(RUN_MESH).is_some()
 }
 
 /// Whether a table says what the journal says, of another physics version than that of today: its jobs are in no

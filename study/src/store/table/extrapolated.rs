@@ -23,8 +23,11 @@ use crate::accuracy::{Features, MeshErrors, Method, PROMISED, Promised};
 use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
+use crate::job::JobId;
 use crate::job::point::Point;
 use crate::job::row::{CellType, ColumnId, SAME_JOB_AS};
+use crate::store::journal::Record;
+use crate::study::Study;
 
 /// End of the name of an extrapolated value.
 pub const EXTRAPOLATED: &str = "_extrapolated";
@@ -57,6 +60,14 @@ pub(super) const SINCE_RELEASE: [(ColumnId, ColumnId); 2] = [
 ];
 
 impl Table {
+    /// The table of a study with these points planned so far, one row per point, with values extrapolated from several
+    /// meshes where it has them.
+    pub fn of_study(study: &Study, points: &[Point], records: &BTreeMap<JobId, Record>) -> Self {
+        let unit = |name: &str| study.unit(name).to_owned();
+        let table = Self::build(points, records, &unit);
+        table.with_extrapolated(points, &study.meshes()).judged(study.result_limits())
+    }
+
     /// The table with the values extrapolated from these meshes, coarsest first, and their errors. `points` are
     /// those of its rows.
     #[must_use]

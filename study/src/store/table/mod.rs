@@ -17,7 +17,6 @@ use crate::job::{JobId, Status};
 use crate::store::journal::{self, Record};
 
 pub mod agreement;
-pub mod corrected;
 pub mod extrapolated;
 mod judged;
 mod mesh_errors;

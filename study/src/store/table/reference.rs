@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use billow_solver::models::film::{CONTACT_COLUMNS, FILM_STRESS_99};
 use billow_solver::output::history::{COLUMNS as HISTORY_COLUMNS, RING_COLUMNS};
 
-use super::corrected::{RUN_MESH, RUN_MESH_MEANING};
 use super::extrapolated::{EXTRAPOLATED, EXTRAPOLATED_ERROR, EXTRAPOLATED_ERROR_MEANING};
 use crate::accuracy::{NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED};
 use crate::job::row::{
@@ -36,7 +35,7 @@ fn table_columns(page: &mut String) {
          them. `safe`, `smallest_margin`, `smallest_margin_of` and `margin_<measure>` exist in a study with\n\
          `limits`, `verdict_depends_on` in one that varies a numerical choice. With `solver.meshes` the promised\n\
          measures (those with an error) and the times since the release have `<measure>_extrapolated`, and a row of `billow table` without `--runs`\n\
-         has these values as its measures; `run_subdivisions` exists with `\"model\": \"auto\"`.\n\
+         has these values as its measures.\n\
          Any cell may be null. The column \"better\" says which side\n\
          `billow compare` calls the better one. Marks: a \"signed\" value can be negative or zero and is\n\
          compared by difference, not by ratio; a \"noisy\" measure changes by more than 3 % with the seed,\n\
@@ -88,8 +87,6 @@ fn table_columns(page: &mut String) {
         let _ =
             writeln!(page, "| `<measure>{end}` | {number} | of the measure |  |  |  | {meaning} |");
     }
-    let integer = CellType::Integer.name();
-    let _ = writeln!(page, "| `{RUN_MESH}` | {integer} | 1 |  |  |  | {RUN_MESH_MEANING} |");
     let _ =
         writeln!(page, "| `{NO_ERROR_REASON}` | {text} |  |  |  |  | {NO_ERROR_REASON_MEANING} |");
     let _ = writeln!(page, "| `{SAME_JOB_AS}` | {text} |  |  |  |  | {SAME_JOB_AS_MEANING} |");

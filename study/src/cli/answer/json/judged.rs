@@ -2,9 +2,8 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::accuracy::PROMISED;
 use crate::analysis::answer::{
-    AutoAnswer, Found, Loads, MeasureVersus, PointMargin, SafeCounts, Safety, Searches, Versus,
+    Found, Loads, MeasureVersus, PointMargin, SafeCounts, Safety, Searches, Versus,
 };
 use crate::input::value::json_value;
 use crate::study::Outcome;
@@ -120,31 +119,4 @@ fn found(searches: &Searches, found: &Found) -> Value {
         _ => {}
     }
     keys
-}
-
-/// The mesh that a study with `"model": "auto"` chose.
-pub fn auto(auto: &AutoAnswer) -> Value {
-    json!({
-        "reference": auto.reference,
-        "chosen": auto.chosen,
-        "pilots": auto.pilots,
-        "points": auto.others,
-        "promises": auto.kept.iter().map(|kept| json!({
-            "measure": kept.measure,
-            "tolerance": kept.tolerance,
-            "correction": kept.correction,
-            "from_table": kept.from_table,
-            "error": kept.error,
-        })).collect::<Vec<_>>(),
-        "checks": auto.planned_checks,
-        "checks_ended": auto.checks.len(),
-        "broken": auto.broken().map(|check| json!({
-            "job": check.job.as_str(),
-            "other_verdict": check.other_verdict,
-            "differences": PROMISED.iter().zip(check.differences)
-                .map(|(promised, difference)| (promised.measure.name().to_owned(), json!(difference)))
-                .collect::<Map<_, _>>(),
-        })).collect::<Vec<_>>(),
-        "cost": auto.cost,
-    })
 }
