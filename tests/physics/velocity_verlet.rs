@@ -15,10 +15,9 @@ use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{crossed_grid, icosphere, nodes_where, tube};
 use billow_solver::integrators::energy_accounting::EnergyAccounting;
 use billow_solver::integrators::{
-    Advance, Budget, FilmSimulation, Integrator, Interval, SimulationSettings, StepAudit,
+    Advance, Budget, Computed, FilmSimulation, Integrator, Interval, SimulationSettings, StepAudit,
     StepMotion, StoredIntegrator,
 };
-use billow_solver::mechanics::forces::membrane::{NodeForces, stress_on_fraction};
 use billow_solver::mechanics::forces::pressure::gas_frequency_squared;
 use billow_solver::mechanics::gas::GasState;
 use billow_solver::mechanics::supports::Supports;
@@ -192,26 +191,14 @@ impl Integrator for VelocityVerlet {
         self.cfl * 2.0 / (film * film + gas + terms).sqrt()
     }
 
-    fn forces(&self) -> &NodeForces {
-        &self.workspace.forces
-    }
-
-    fn accounting(&self) -> &EnergyAccounting {
-        &self.accounting
+    fn computed(&self) -> Computed<'_> {
+        Computed { workspace: &self.workspace, accounting: &self.accounting }
     }
 
     fn ledger(&self, system: &FilmSystem, state: &FilmState) -> Ledger {
         let of_node = |(mass, v): (&f64, Vector3<f64>)| 0.5 * mass * v.norm_squared();
         let kinetic = system.model.mass.iter().zip(state.velocities.iter()).map(of_node).sum();
         self.accounting.ledger(system, state, kinetic, self.evaluation.strain)
-    }
-
-    fn stress_on_fraction(&self, system: &FilmSystem, fraction: f64) -> f64 {
-        stress_on_fraction(&system.model, &self.workspace.histories, fraction)
-    }
-
-    fn smallest_gap(&self) -> f64 {
-        f64::INFINITY
     }
 
     fn stored(&self) -> Option<StoredIntegrator> {

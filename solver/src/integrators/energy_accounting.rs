@@ -63,7 +63,11 @@ pub struct Works {
 impl EnergyAccounting {
     /// The accounting at time 0.
     pub fn start(system: &FilmSystem, state: &FilmState) -> Self {
-        Self { start_moment: system.first_moment(state).into(), ..Self::default() }
+        Self {
+            broad_phase_rebuilds: u64::from(system.contact.is_some()),
+            start_moment: system.first_moment(state).into(),
+            ..Self::default()
+        }
     }
 
     /// The accounting this share of the way from `self` to a later one.

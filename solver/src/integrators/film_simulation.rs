@@ -96,7 +96,7 @@ impl FilmSimulation {
         settings: SimulationSettings,
         integrator: Box<dyn Integrator>,
     ) -> Self {
-        let steps = integrator.accounting().steps;
+        let steps = integrator.computed().accounting.steps;
         let audit = FilmAudit::start(settings.monitor, &system, &state, steps);
         Self { system, state, settings, integrator, audit, events: Vec::new() }
     }
@@ -216,7 +216,11 @@ impl FilmSimulation {
         let advanced = self.integrator.advance(&mut self.state, &self.system, interval, budget)?;
         let reached = advanced == Advance::Reached;
         if reached {
-            self.audit.inspect(&self.system, &self.state, self.integrator.forces())?;
+            self.audit.inspect(
+                &self.system,
+                &self.state,
+                &self.integrator.computed().workspace.forces,
+            )?;
         }
         Ok(reached)
     }

@@ -6,7 +6,7 @@ use super::energy_accounting::EnergyAccounting;
 use super::film_audit::FilmAudit;
 use super::interface::Integrator;
 use super::passage_audit::PassageAudit;
-use crate::mechanics::forces::membrane::{NORMAL_TO_GRADIENT, NodeForces};
+use crate::mechanics::forces::membrane::{NORMAL_TO_GRADIENT, NodeForces, stress_on_fraction};
 use crate::mechanics::supports::RigidPlane;
 use crate::output::ledger::{GasBalance, Ledger};
 use crate::system::{FilmState, FilmSystem};
@@ -25,12 +25,12 @@ pub struct FilmView<'a> {
 impl<'a> FilmView<'a> {
     /// Forces on the nodes, dissipative ones included.
     pub fn forces(&self) -> &'a NodeForces {
-        self.integrator.forces()
+        &self.integrator.computed().workspace.forces
     }
 
     /// Energy accounting since time 0.
     pub fn accounting(&self) -> &'a EnergyAccounting {
-        self.integrator.accounting()
+        self.integrator.computed().accounting
     }
 
     /// Accepted steps.
@@ -96,13 +96,15 @@ impl<'a> FilmView<'a> {
 
     /// Stress (Pa) that the largest principal stress reaches on this fraction of the film's area.
     pub fn stress_on_fraction(&self, fraction: f64) -> f64 {
-        self.integrator.stress_on_fraction(self.system, fraction)
+        let histories = &self.integrator.computed().workspace.histories;
+        stress_on_fraction(&self.system.model, histories, fraction)
     }
 
     /// Smallest gap of the pairs of film that are closer than their contact distance, m; infinite if there
     /// is none. Pairs beyond the contact distance are not considered.
     pub fn smallest_gap(&self) -> f64 {
-        self.integrator.smallest_gap()
+        let contact = self.integrator.computed().workspace.contact.as_ref();
+        contact.map_or(f64::INFINITY, |contact| contact.list.smallest_gap)
     }
 
     /// Passages of film through film so far; `None` without an audit.

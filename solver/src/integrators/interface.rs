@@ -13,13 +13,12 @@ use core::fmt;
 use crate::geometry::field::Field;
 use crate::integrators::StoredIntegrator;
 use crate::integrators::energy_accounting::EnergyAccounting;
-use crate::mechanics::forces::membrane::NodeForces;
 use crate::output::events::Event;
 use crate::output::ledger::Ledger;
 use crate::output::outcome::Failure;
 use crate::platform::stopwatch::Stopwatch;
 use crate::scene::timeline::Phase;
-use crate::system::{FilmState, FilmSystem};
+use crate::system::{FilmState, FilmSystem, Workspace};
 
 /// An interval of time in which the phase is constant. Its end is reached exactly.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -127,6 +126,15 @@ pub enum Advance {
     Paused,
 }
 
+/// What an integrator computed at the time of its state.
+#[derive(Debug, Clone, Copy)]
+pub struct Computed<'a> {
+    /// Forces on the nodes, dissipative ones included, strain and stress, the search for contacts.
+    pub workspace: &'a Workspace,
+    /// Energy accounting since time 0.
+    pub accounting: &'a EnergyAccounting,
+}
+
 /// An integrator of film in time.
 pub trait Integrator: fmt::Debug + Send {
     /// Advances the state to the end of the interval, or until the budget is used. All fields of the state
@@ -145,21 +153,12 @@ pub trait Integrator: fmt::Debug + Send {
     /// The length of the next step if nothing bounds it but this method, s.
     fn next_step(&self, system: &FilmSystem, state: &FilmState) -> f64;
 
-    /// Forces on the nodes at the state's time, dissipative ones included.
-    fn forces(&self) -> &NodeForces;
-
-    /// Energy accounting since time 0.
-    fn accounting(&self) -> &EnergyAccounting;
+    /// What the method computed at the state's time.
+    fn computed(&self) -> Computed<'_>;
 
     /// The energy ledger of the film. [`EnergyAccounting::ledger`] needs only the energies that the method
     /// conserves.
     fn ledger(&self, system: &FilmSystem, state: &FilmState) -> Ledger;
-
-    /// Stress (Pa) that the largest principal stress reaches on this fraction of the film's area.
-    fn stress_on_fraction(&self, system: &FilmSystem, fraction: f64) -> f64;
-
-    /// Smallest gap of pairs of film closer than their contact distance, m; infinite if there is none.
-    fn smallest_gap(&self) -> f64;
 
     /// Private state for a checkpoint; `None` for an integrator that cannot be resumed.
     fn stored(&self) -> Option<StoredIntegrator>;

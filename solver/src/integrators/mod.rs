@@ -27,7 +27,9 @@ mod virtual_displacement;
 
 pub use film_simulation::{FilmSimulation, SimulationSettings, StoredFilm};
 pub use film_view::FilmView;
-pub use interface::{Advance, Budget, Integrator, Interval, NoAudit, StepAudit, StepMotion};
+pub use interface::{
+    Advance, Budget, Computed, Integrator, Interval, NoAudit, StepAudit, StepMotion,
+};
 
 /// Everything in which integrators of film differ, but for the trait. To add one: a variant of
 /// [`IntegratorKind`], a folder, and an arm of [`entry`].
@@ -100,7 +102,7 @@ impl StoredIntegrator {
     }
 
     /// The integrator at a state and a CFL number; it continues with the same bits.
-    fn resume(self, system: &FilmSystem, state: &FilmState, cfl: f64) -> Box<dyn Integrator> {
+    pub fn resume(self, system: &FilmSystem, state: &FilmState, cfl: f64) -> Box<dyn Integrator> {
         match self {
             Self::Explicit(stored) => {
                 Box::new(explicit::Explicit::resume(system, state, stored, cfl))

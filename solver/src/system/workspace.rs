@@ -206,6 +206,11 @@ impl Workspace {
         self.contact.as_ref().is_some_and(|contact| contact.list.contact_active)
     }
 
+    /// Path length of the search for contacts, m; 0 without contact.
+    pub fn path_length(&self) -> f64 {
+        self.contact.as_ref().map_or(0.0, |contact| contact.progress.path_length)
+    }
+
     /// Makes the contacts of the trial those of the state.
     pub fn commit_contact(&mut self, state: &mut FilmState) {
         if let Some(contact) = &mut self.contact {

@@ -5,14 +5,10 @@
 //! accounting and the audits of the run go on: to them the fault is a defect of the program, not a new start.
 
 use billow_solver::geometry::field::Field;
-use billow_solver::integrators::energy_accounting::EnergyAccounting;
-use billow_solver::integrators::explicit::Explicit;
-use billow_solver::integrators::hybrid::Hybrid;
-use billow_solver::integrators::implicit::Implicit;
 use billow_solver::integrators::{
-    Advance, Budget, FilmSimulation, Integrator, Interval, StoredFilm, StoredIntegrator, entry,
+    Advance, Budget, Computed, FilmSimulation, Integrator, Interval, StoredFilm, StoredIntegrator,
+    entry,
 };
-use billow_solver::mechanics::forces::membrane::NodeForces;
 use billow_solver::models::film::FilmRun;
 use billow_solver::output::ledger::Ledger;
 use billow_solver::output::outcome::Failure;
@@ -61,21 +57,6 @@ pub fn injected(mut run: FilmRun, change: Change, time: f64) -> FilmRun {
     run
 }
 
-fn resumed(
-    stored: StoredIntegrator,
-    system: &FilmSystem,
-    state: &FilmState,
-    cfl: f64,
-) -> Box<dyn Integrator> {
-    match stored {
-        StoredIntegrator::Explicit(stored) => {
-            Box::new(Explicit::resume(system, state, stored, cfl))
-        }
-        StoredIntegrator::Implicit(stored) => Box::new(Implicit::resume(system, state, *stored)),
-        StoredIntegrator::Hybrid(stored) => Box::new(Hybrid::resume(system, state, *stored, cfl)),
-    }
-}
-
 /// Moves positions away from others as far again.
 fn double(positions: &mut Field, before: &Field) {
     for node in 0..positions.len() {
@@ -116,7 +97,7 @@ impl Injected {
         let mut stored = StoredFilm { state: state.clone(), integrator };
         edit(&mut stored);
         *state = stored.state;
-        self.inner = resumed(stored.integrator, system, state, self.cfl);
+        self.inner = stored.integrator.resume(system, state, self.cfl);
     }
 
     /// Injects what is wrong before a step.
@@ -193,24 +174,12 @@ impl Integrator for Injected {
         self.inner.next_step(self.seen(system), state)
     }
 
-    fn forces(&self) -> &NodeForces {
-        self.inner.forces()
-    }
-
-    fn accounting(&self) -> &EnergyAccounting {
-        self.inner.accounting()
+    fn computed(&self) -> Computed<'_> {
+        self.inner.computed()
     }
 
     fn ledger(&self, system: &FilmSystem, state: &FilmState) -> Ledger {
         self.inner.ledger(self.seen(system), state)
-    }
-
-    fn stress_on_fraction(&self, system: &FilmSystem, fraction: f64) -> f64 {
-        self.inner.stress_on_fraction(self.seen(system), fraction)
-    }
-
-    fn smallest_gap(&self) -> f64 {
-        self.inner.smallest_gap()
     }
 
     fn stored(&self) -> Option<StoredIntegrator> {

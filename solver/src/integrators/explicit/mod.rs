@@ -25,13 +25,11 @@
 use crate::collision::contact::SearchProgress;
 use crate::geometry::field::Field;
 use crate::integrators::energy_accounting::EnergyAccounting;
-use crate::integrators::interface::{Advance, Budget, Integrator, Interval, StepMotion};
+use crate::integrators::interface::{Advance, Budget, Computed, Integrator, Interval, StepMotion};
 use crate::integrators::{IntegratorEntry, StoredIntegrator};
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::damping::stable_share;
-use crate::mechanics::forces::membrane::{
-    MembraneSums, NodeForces, stored_energy, stress_on_fraction,
-};
+use crate::mechanics::forces::membrane::{MembraneSums, stored_energy};
 use crate::mechanics::forces::pressure::gas_frequency_squared;
 use crate::output::ledger::Ledger;
 use crate::output::outcome::{AuditKind, Failure};
@@ -86,8 +84,7 @@ pub struct Explicit {
 impl Explicit {
     /// Starts at a state.
     pub fn start(system: &FilmSystem, state: &FilmState, workspace: Workspace, cfl: f64) -> Self {
-        let mut accounting = EnergyAccounting::start(system, state);
-        accounting.broad_phase_rebuilds = u64::from(system.contact.is_some());
+        let accounting = EnergyAccounting::start(system, state);
         let motion = Motion::start(state, accounting);
         let mut explicit = Self::with(system, state, workspace, motion, cfl);
         explicit.motion.accounting.start_energy = explicit.ledger(system, state).stored();
@@ -337,12 +334,8 @@ impl Integrator for Explicit {
         self.stable_step(system, state)
     }
 
-    fn forces(&self) -> &NodeForces {
-        &self.workspace.forces
-    }
-
-    fn accounting(&self) -> &EnergyAccounting {
-        &self.motion.accounting
+    fn computed(&self) -> Computed<'_> {
+        Computed { workspace: &self.workspace, accounting: &self.motion.accounting }
     }
 
     fn ledger(&self, system: &FilmSystem, state: &FilmState) -> Ledger {
@@ -351,20 +344,11 @@ impl Integrator for Explicit {
         self.motion.accounting.ledger(system, state, kinetic, strain)
     }
 
-    fn stress_on_fraction(&self, system: &FilmSystem, fraction: f64) -> f64 {
-        stress_on_fraction(&system.model, &self.workspace.histories, fraction)
-    }
-
-    fn smallest_gap(&self) -> f64 {
-        self.workspace.contact.as_ref().map_or(f64::INFINITY, |contact| contact.list.smallest_gap)
-    }
-
     fn stored(&self) -> Option<StoredIntegrator> {
-        let progress = self.workspace.contact.as_ref().map(|contact| contact.progress);
         Some(StoredIntegrator::Explicit(StoredExplicit {
             motion: self.motion.clone(),
             histories: self.workspace.histories.clone(),
-            path_length: progress.unwrap_or_default().path_length,
+            path_length: self.workspace.path_length(),
         }))
     }
 

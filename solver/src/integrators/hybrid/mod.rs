@@ -15,14 +15,12 @@
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::field::Field;
-use crate::integrators::energy_accounting::EnergyAccounting;
 use crate::integrators::explicit::{Explicit, StoredExplicit};
 use crate::integrators::implicit::{
     Implicit, Newton, Patience, Progress, StepControl, StoredImplicit,
 };
-use crate::integrators::interface::{Advance, Budget, Integrator, Interval};
+use crate::integrators::interface::{Advance, Budget, Computed, Integrator, Interval};
 use crate::integrators::{IntegratorEntry, StoredIntegrator, implicit};
-use crate::mechanics::forces::membrane::NodeForces;
 use crate::output::events::{Event, EventKind};
 use crate::output::ledger::Ledger;
 use crate::output::outcome::Failure;
@@ -208,7 +206,8 @@ impl Hybrid {
     ) -> Result<(), Failure> {
         let Active::Explicit(explicit) = &self.active else { return Ok(()) };
         let stable = explicit.next_step(system, state);
-        let (before, accounting) = (explicit.ledger(system, state), *explicit.accounting());
+        let (before, accounting) =
+            (explicit.ledger(system, state), *explicit.computed().accounting);
         if !self.is_quiet(state, system, interval.phase, stable) {
             return Ok(());
         }
@@ -241,7 +240,7 @@ impl Hybrid {
     /// Explicit steps from here on.
     fn give_up(&mut self, state: &FilmState, system: &FilmSystem, events: &mut Vec<Event>) {
         let Active::Implicit(implicit) = &self.active else { return };
-        let accounting = *implicit.accounting();
+        let accounting = *implicit.computed().accounting;
         let before = implicit.ledger(system, state).stored();
         let largest = self.policy.largest_kinetic_energy;
         let mut explicit = Explicit::continue_run(system, state, accounting, largest, self.cfl);
@@ -318,24 +317,12 @@ impl Integrator for Hybrid {
         self.active().next_step(system, state)
     }
 
-    fn forces(&self) -> &NodeForces {
-        self.active().forces()
-    }
-
-    fn accounting(&self) -> &EnergyAccounting {
-        self.active().accounting()
+    fn computed(&self) -> Computed<'_> {
+        self.active().computed()
     }
 
     fn ledger(&self, system: &FilmSystem, state: &FilmState) -> Ledger {
         self.active().ledger(system, state)
-    }
-
-    fn stress_on_fraction(&self, system: &FilmSystem, fraction: f64) -> f64 {
-        self.active().stress_on_fraction(system, fraction)
-    }
-
-    fn smallest_gap(&self) -> f64 {
-        self.active().smallest_gap()
     }
 
     fn stored(&self) -> Option<StoredIntegrator> {

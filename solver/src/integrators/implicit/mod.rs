@@ -13,9 +13,10 @@
 use crate::collision::contact::SearchProgress;
 use crate::geometry::field::Field;
 use crate::integrators::energy_accounting::EnergyAccounting;
-use crate::integrators::interface::{Advance, Budget, Integrator, Interval, StepAudit, StepMotion};
+use crate::integrators::interface::{
+    Advance, Budget, Computed, Integrator, Interval, StepAudit, StepMotion,
+};
 use crate::integrators::{IntegratorEntry, Refusal, StoredIntegrator};
-use crate::mechanics::forces::membrane::{NodeForces, stress_on_fraction};
 use crate::output::ledger::Ledger;
 use crate::output::outcome::{AuditKind, Failure};
 use crate::platform::stopwatch::Stage;
@@ -113,8 +114,7 @@ impl Implicit {
         workspace: Workspace,
         control: StepControl,
     ) -> Self {
-        let mut accounting = EnergyAccounting::start(system, state);
-        accounting.broad_phase_rebuilds = u64::from(system.contact.is_some());
+        let accounting = EnergyAccounting::start(system, state);
         let next_step = match control {
             StepControl::Fixed(step) => step,
             StepControl::Error(_) => FIRST_STEP * 2.0 / system.model.largest_frequency(),
@@ -343,11 +343,9 @@ impl Implicit {
     }
 
     pub(super) fn to_store(&self) -> StoredImplicit {
-        let progress = self.workspace.contact.as_ref().map(|contact| contact.progress);
-        let path_length = progress.unwrap_or_default().path_length;
         StoredImplicit {
             motion: self.motion.clone(),
-            path_length,
+            path_length: self.workspace.path_length(),
             ordered_at: self.newton.ordered_at.clone(),
         }
     }
@@ -388,25 +386,13 @@ impl Integrator for Implicit {
         self.motion.next_step
     }
 
-    fn forces(&self) -> &NodeForces {
-        &self.workspace.forces
-    }
-
-    fn accounting(&self) -> &EnergyAccounting {
-        &self.motion.accounting
+    fn computed(&self) -> Computed<'_> {
+        Computed { workspace: &self.workspace, accounting: &self.motion.accounting }
     }
 
     fn ledger(&self, system: &FilmSystem, state: &FilmState) -> Ledger {
         let kinetic = system.kinetic_energy(state);
         self.motion.accounting.ledger(system, state, kinetic, self.evaluation.strain)
-    }
-
-    fn stress_on_fraction(&self, system: &FilmSystem, fraction: f64) -> f64 {
-        stress_on_fraction(&system.model, &self.workspace.histories, fraction)
-    }
-
-    fn smallest_gap(&self) -> f64 {
-        self.workspace.contact.as_ref().map_or(f64::INFINITY, |contact| contact.list.smallest_gap)
     }
 
     fn stored(&self) -> Option<StoredIntegrator> {
