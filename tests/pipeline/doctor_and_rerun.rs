@@ -240,11 +240,11 @@ fn files_of_a_newer_version_are_refused() {
     for (path, from, to, expected) in [
         (
             &journal,
-            "\"version\":5",
             "\"version\":6",
-            "journal of version 6, this program reads up to 5",
+            "\"version\":7",
+            "journal of version 7, this program reads version 6",
         ),
-        (&study, "\"version\": 1", "\"version\": 2", "version 2, this program reads up to 1"),
+        (&study, "\"version\": 1", "\"version\": 2", "version 2, this program reads version 1"),
     ] {
         let sound = fs::read_to_string(path).unwrap();
         // The newer program wrote its checksum.

@@ -1,13 +1,8 @@
-//! One study in several runs: parts in folders of their own, runs that share a folder, scripts for a cluster.
-
-use std::fs;
-use std::thread::sleep;
-use std::time::{Duration, Instant};
+//! One study in several runs: parts in folders of their own, tasks and scripts for a cluster.
 
 use serde_json::json;
 
-use crate::interruption::signal;
-use crate::support::{TestFolder, grid, small_grid, stderr, without_costs};
+use crate::support::{TestFolder, json_of, small_grid, stderr, without_costs};
 
 #[test]
 fn parts_are_merged_into_the_table_of_the_whole() {
@@ -23,9 +18,6 @@ fn parts_are_merged_into_the_table_of_the_whole() {
     assert!(text.contains("copied") && text.contains("next     billow run all"), "{text}");
     folder.stdout(&["merge", "1", "2", "3", "--results", "all"]);
     assert_eq!(without_costs(folder.rows("all")), without_costs(folder.rows("results/grid")));
-    let status = folder.stdout(&["status", "all", "--json"]);
-    fs::remove_file(folder.path().join("all/index.json")).unwrap();
-    assert_eq!(folder.stdout(&["status", "all", "--json"]), status);
     assert!(
         folder.stdout(&["run", "grid.json", "--results", "all", "-q"]).contains("nothing to run")
     );
@@ -37,13 +29,12 @@ fn what_cannot_be_merged_or_run_in_parts_is_refused() {
     let folder = TestFolder::new(&small_grid());
     folder.stdout(&["run", "grid.json", "--results", "one", "-q"]);
     folder.stdout(&["run", "grid.json", "--set", "grid.N=[5]", "--results", "two", "-q"]);
-    let cases: [(&[&str], &str); 7] = [
+    let cases: [(&[&str], &str); 6] = [
         (&["merge", "one", "two", "--results", "all"], "two: not results of the study"),
         (&["merge", "one", "two"], "none into which they are joined"),
         (&["merge", "nothing"], "no results here"),
         (&["run", "grid.json", "--points", "4/3"], "--points = \"4/3\": is no part"),
-        (&["run", "grid.json", "--chunk", "0001/1", "--shared"], "there is no"),
-        (&["run", "grid.json", "--results", "two", "--shared"], "another version of this study"),
+        (&["merge", "one"], "no results of tasks here"),
         (&["submit", "grid.json", "--time", "soon"], "--time = \"soon\""),
     ];
     for (arguments, expected) in cases {
@@ -56,37 +47,33 @@ fn what_cannot_be_merged_or_run_in_parts_is_refused() {
     assert!(!folder.path().join("all").exists());
 }
 
+/// The command of the array of `billow submit`, run here for each task; the queue is not asked.
 #[test]
-#[ignore = "waits two minutes for the lease of a dead run"]
-fn runs_that_share_a_folder_give_one_table_although_one_is_killed() {
-    let flows: Vec<f64> = (1..=400).map(|flow| 0.00002 * f64::from(flow)).collect();
-    let mut study =
-        grid(&json!({ "N": [5, 6], "M": [3], "alpha1_over_phi": [0.8], "mass_flow_rate": flows }));
-    study["outputs"] = json!({ "sample_interval": "0.1 ms" });
-    let folder = TestFolder::new(&study);
+fn tasks_store_parts_of_the_missing_jobs_and_are_merged() {
+    let folder = TestFolder::new(&small_grid());
     folder.stdout(&["run", "grid.json", "--results", "whole", "-q"]);
-    let shared = ["run", "grid.json", "--shared", "--threads", "1", "-q"];
-    let mut killed = folder.billow(&shared).spawn().unwrap();
-    let start = Instant::now();
-    while fs::read_dir(folder.results().join("claims")).map_or(0, Iterator::count) < 1 {
-        assert!(start.elapsed() < Duration::from_mins(1), "no run began");
-        sleep(Duration::from_millis(1));
-    }
-    sleep(Duration::from_millis(30));
-    let other = folder.billow(&shared).spawn().unwrap();
-    assert!(killed.try_wait().unwrap().is_none(), "it ended before it was killed");
-    signal(&killed, "-9");
-    killed.wait().unwrap();
-    let refused = folder.run(&["run", "grid.json", "-q"]);
-    assert!(stderr(&refused).contains("--shared"), "{}", stderr(&refused));
-    let output = other.wait_with_output().unwrap();
-    assert!(output.status.success(), "{}", stderr(&output));
-    // The other run waits for the lease of the dead one, then has its job.
-    folder.stdout(&["merge", "results/grid", "-q"]);
-    assert_eq!(without_costs(folder.rows("results/grid")), without_costs(folder.rows("whole")));
-    let status = folder.stdout(&["status", "grid.json", "--json"]);
-    let status: serde_json::Value = serde_json::from_str(&status).unwrap();
-    assert_eq!((&status["pending"], &status["workers"]["runs"]), (&json!(0), &json!([])));
+    folder.stdout(&["run", "grid.json", "--points", "1/4", "-q"]);
+    let root = "results/grid";
+    let ran = |task: &str| -> u64 {
+        let (points, part) = (format!("{task}/2"), format!("{root}/parts/{task}-2"));
+        let arguments = ["run", root, "--points", &points, "--results", &part, "-q"];
+        json_of(&folder, &arguments)["ran"].as_u64().unwrap()
+    };
+    let before = json_of(&folder, &["status", root]);
+    let tasks = ran("1") + ran("2");
+    assert_eq!(json!(tasks), before["pending"], "no job of the whole runs again");
+    assert_eq!(ran("1"), 0, "a task that starts again");
+    let status = json_of(&folder, &["status", root]);
+    assert_eq!(
+        (&status["pending"], &status["workers"]["unmerged"]),
+        (&json!(tasks), &json!(tasks))
+    );
+    let text = folder.stdout(&["merge", root]);
+    assert!(text.contains(&format!("{tasks} jobs copied")), "{text}");
+    assert_eq!(without_costs(folder.rows(root)), without_costs(folder.rows("whole")));
+    let status = json_of(&folder, &["status", root]);
+    assert_eq!((&status["pending"], &status["workers"]["unmerged"]), (&json!(0), &json!(0)));
+    folder.stdout(&["doctor", root]);
 }
 
 #[test]
@@ -112,9 +99,7 @@ fn the_scripts_for_a_cluster_are_printed_without_one() {
     ] {
         assert!(text.lines().any(|found| found == line), "{line}: {text}");
     }
-    assert!(
-        text.contains("--shared --chunk 0001/\"$SLURM_ARRAY_TASK_ID\"") && text.contains(" merge ")
-    );
+    assert!(text.contains("--points \"$SLURM_ARRAY_TASK_ID/3\"") && text.contains(" merge "));
     assert!(!folder.results().exists());
     // As Slurm writes time and memory.
     let of_slurm = ["--tasks", "3", "--time", "1:30:00", "--mem", "2G", "--sbatch=--account=film"];

@@ -27,7 +27,7 @@ done
 . "$here/cluster.sh"
 work=$(mktemp -d)
 # Programs of tasks outlive a cluster that is stopped by force.
-trap 'stop_cluster || true; pkill -9 -f -- "$work/shared --shared" || true; rm -rf "$work"' EXIT
+trap 'stop_cluster || true; pkill -9 -f -- "$work/shared --points" || true; rm -rf "$work"' EXIT
 if [[ $billow == *.tar.gz ]]; then
   tar -xzf "$billow" -C "$work"
   billow=$(realpath "$work"/billow-*/billow)
@@ -50,15 +50,15 @@ for row in json.load(sys.stdin):
 queue_is_empty() { [ -z "$(squeue --noheader)" ]; }
 tasks_run() { [ "$(squeue --noheader --states=running | wc -l)" -ge 2 ]; }
 pending() { "$billow" status "$shared" --json | python3 -c 'import json, sys; print(json.load(sys.stdin)["pending"])'; }
-# The number of the first task of the first submission that has a process, other than one that was killed.
+# The number of the first task that has a process, other than one that was killed.
 killed=0
 running_task() {
-  pgrep -af -- "$work/shared --shared --chunk 0001/" | grep -o '0001/[0-9]*' | cut -d / -f 2 | sort -n | grep -vx "$killed" | head -1
+  pgrep -af -- "$work/shared --points" | grep -o 'points [0-9]*' | cut -d ' ' -f 2 | sort -n | grep -vx "$killed" | head -1
 }
 # Kills the process of a task; a task may end before it is killed.
 kill_task() {
   killed=$(running_task)
-  [ -n "$killed" ] && pkill -9 -f -- "--chunk 0001/$killed "
+  [ -n "$killed" ] && pkill -9 -f -- "--points $killed/6 "
 }
 # Asks a task to stop. scancel gives the signal, and then ends with an error of its array.
 ask_task_to_stop() {
@@ -85,10 +85,10 @@ fi
 grep -q "still in the queue" "$work/refused.txt"
 
 wait_for "running tasks" 60 tasks_run
-"$billow" status "$shared" | grep -E "^  (shared|slurm)"
+"$billow" status "$shared" | grep -E "^  slurm"
 wait_for "task to kill" 60 kill_task
 say "task $killed was killed"
-array=$(python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["array"])' "$shared/submissions/0001/queue.json")
+array=$(python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["array"])' "$shared/submission/queue.json")
 wait_for "task to ask" 60 ask_task_to_stop
 say "task $asked was asked to stop"
 wait_for "running tasks" 60 tasks_run
@@ -114,11 +114,10 @@ for submission in 1 2 3 4 5; do
   "$billow" submit "$study" --results "$shared" --tasks 6
 done
 [ "$(pending)" -eq 0 ]
-grep -q "stopped by signal" "$shared/submissions/0001/task-$asked.txt"
+grep -q "stopped by signal" "$shared/submission/task-$asked.txt"
 "$billow" doctor "$shared"
 table "$direct" > "$work/direct.json"
 table "$shared" > "$work/shared.json"
 cmp "$work/direct.json" "$work/shared.json"
-[ -z "$(ls "$shared/claims")" ]
 "$billow" submit "$study" --results "$shared" 2>&1 | grep -q "nothing to submit"
 say "the same table: $(wc -l < "$work/shared.json") rows"

@@ -2,9 +2,8 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
-use super::options::{OutputOptions, QuietOption};
+use super::options::OutputOptions;
 use super::print::count;
 use super::run::listed;
 use super::{Format, output_error};
@@ -14,7 +13,6 @@ use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, disk_error};
 use crate::platform::stop::Stop;
 use crate::run::merge::{self, Merged};
-use crate::store::claims::{LEASE, RENEWAL};
 use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::study::Study;
@@ -22,8 +20,7 @@ use crate::study::Study;
 /// Arguments of `billow merge`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Folders of results of one study. One alone, without --results, is ended: what its runs left is cleared, and its
-    /// table is written.
+    /// Folders of results of one study. One alone, without --results, gets the results of the tasks of `billow submit`.
     #[arg(required = true, value_name = "FOLDER")]
     folders: Vec<PathBuf>,
     /// Folder into which the jobs of the others are copied; it may be new.
@@ -31,8 +28,6 @@ pub struct Args {
     results: Option<PathBuf>,
     #[command(flatten)]
     output: OutputOptions,
-    #[command(flatten)]
-    quiet: QuietOption,
 }
 
 /// Runs `billow merge`. Folders that are read stay as they are; a merge that was stopped goes on where it was.
@@ -43,7 +38,7 @@ pub struct Args {
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let (target, merged) = match (&args.results, args.folders.as_slice()) {
-        (None, [only]) => (only, finish(only, args.quiet.quiet, &stop)?),
+        (None, [only]) => (only, copy(&parts(only)?, only, &stop)?),
         (None, _) => return Err(no_target()),
         (Some(target), sources) => (target, copy(sources, target, &stop)?),
     };
@@ -65,25 +60,6 @@ fn no_target() -> Error {
     )
 }
 
-/// Ends a folder in which runs worked side by side.
-fn finish(folder: &Path, quiet: bool, stop: &Stop) -> Result<Merged> {
-    let results = existing(folder)?;
-    let runs = results.live_runs()?;
-    if let (Some(first), false) = (runs.first(), quiet) {
-        eprintln!(
-            "waiting for {} that may be alive (the first is {}), at most {} s",
-            count(runs.len(), "run"),
-            first.owner,
-            LEASE.as_secs()
-        );
-    }
-    merge::wait_for_runs(&results, LEASE + RENEWAL + Duration::from_secs(1), stop)?;
-    if stop.requested().is_none() {
-        merge::finish(&results)?;
-    }
-    Ok(Merged::default())
-}
-
 /// Copies the jobs of folders into another one.
 fn copy(sources: &[PathBuf], target: &Path, stop: &Stop) -> Result<Merged> {
     let sources: Vec<Results<'_>> =
@@ -94,6 +70,17 @@ fn copy(sources: &[PathBuf], target: &Path, stop: &Stop) -> Result<Merged> {
         sources.into_iter().filter(|source| source.root() != target).collect();
     let target = Results::new(&Disk, target);
     merge::merge(&others, &target, (&study.name, &study.resolved()), stop)
+}
+
+/// The folders of the tasks of `billow submit`.
+fn parts(folder: &Path) -> Result<Vec<PathBuf>> {
+    let parts = existing(folder)?.parts()?;
+    let paths: Vec<PathBuf> = parts.iter().map(|part| part.root().to_owned()).collect();
+    if paths.is_empty() {
+        let problem = "no results of tasks here (parts/)\n  next: billow submit, or name the folders to merge and --results DIR";
+        return Err(Error::Disk { path: folder.to_owned(), problem: problem.to_owned() });
+    }
+    Ok(paths)
 }
 
 /// The results in a folder.

@@ -85,7 +85,7 @@ pub enum Command {
     Run(run::Args),
     /// Give the unfinished jobs of a study to a cluster.
     Submit(submit::Args),
-    /// Join what several runs have stored: parts of a study, or runs that shared a folder.
+    /// Join what several runs have stored: parts of a study, or tasks of a cluster.
     Merge(merge::Args),
     /// Show the progress of a study, during a run and afterwards.
     Status(status::Args),

@@ -21,8 +21,9 @@ use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, disk_error};
 use crate::platform::stop::Stop;
+use crate::run::progress;
 use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run, Summary};
-use crate::run::{merge, progress};
+use crate::run::selection::Selection;
 use crate::store::reference_file::Unread;
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
@@ -36,7 +37,6 @@ mod failures;
 mod scope;
 
 use failures::result;
-pub(super) use scope::Scope;
 use scope::ScopeOptions;
 
 /// Arguments of `billow run`.
@@ -99,8 +99,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             eprintln!("note: {note}");
         }
     }
-    let scope = args.scope.scope(&Results::new(&Disk, &root))?;
-    run_study(&study, &root, None, scope, &args.options, out)
+    run_study(&study, &root, None, args.scope.selection()?, &args.options, out)
 }
 
 /// The study file that an argument names, and its results folder if it is that folder or its study.json.
@@ -132,7 +131,7 @@ pub(super) fn run_study(
     study: &Study,
     root: &Path,
     again: Option<&BTreeSet<JobId>>,
-    scope: Scope,
+    selection: Selection,
     options: &RunOptions,
     out: &mut dyn Write,
 ) -> Result<()> {
@@ -154,7 +153,6 @@ pub(super) fn run_study(
     }
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let results = Results::new(&Disk, root);
-    let (shared, is_task) = (scope.shared.is_some(), scope.is_task);
     let summary = runner::run(
         &Run {
             name: &study.name,
@@ -173,21 +171,14 @@ pub(super) fn run_study(
             checkpoint_interval: CHECKPOINT_INTERVAL,
             stop,
             rerun: again,
-            selection: scope.selection,
-            shared: scope.shared,
+            selection,
+            known: results.known()?,
         },
         progress::reporter(options.progress.loudness(), threads).as_mut(),
     )?;
     if let Some(error) = interrupted(&summary) {
         // The program ends soon after a signal, whatever the size of the study.
         return Err(error);
-    }
-    if is_task {
-        // The task that merges says the rest, and the table has the jobs that failed.
-        return print_task(&study.name, &summary, out).map_err(output_error);
-    }
-    if shared {
-        merge::finish_if_last(&results)?;
     }
     let mut stored = Stored::read(results)?;
     stored.units = units;
@@ -202,16 +193,6 @@ pub(super) fn run_study(
 fn interrupted(summary: &Summary) -> Option<Error> {
     let open = summary.counts.of(Status::Pending) > 0;
     summary.signal.filter(|_| open).map(Error::Signal)
-}
-
-/// Prints what a task of a submission did.
-fn print_task(study: &str, summary: &Summary, out: &mut dyn Write) -> io::Result<()> {
-    let elsewhere = count(summary.ended_elsewhere, "job");
-    writeln!(
-        out,
-        "{study}: {} run, {elsewhere} ended by other tasks meanwhile",
-        count(summary.ran, "job")
-    )
 }
 
 /// The static references that can be used. Says on stderr which files are damaged.
@@ -270,10 +251,6 @@ impl Ended<'_> {
         writeln!(out, "  status   {}", listed(&counts.status))?;
         if !counts.verdict.is_empty() {
             writeln!(out, "  verdict  {}", listed(&counts.verdict))?;
-        }
-        if summary.ended_elsewhere > 0 {
-            let jobs = count(summary.ended_elsewhere, "job");
-            writeln!(out, "  shared   {jobs} ended by other runs meanwhile")?;
         }
         if summary.not_selected > 0 {
             let jobs = count(summary.not_selected, "unfinished job");

@@ -115,7 +115,7 @@ impl<'a> Status<'a> {
             timed,
             threads,
             checkpoints: checkpoints(&stored.results),
-            workers: Workers::of(&stored.results)?,
+            workers: Workers::of(&stored.results, &|id| stored.record(id).is_some())?,
         })
     }
 

@@ -11,11 +11,10 @@ use super::print::{count, duration};
 use super::run::study_of_results;
 use super::target::results_folder;
 use super::{Format, output_error};
-use crate::cluster::chunks::{self, CostedJob};
 use crate::cluster::notation;
 use crate::cluster::script::{Needs, Scripts};
 use crate::cluster::slurm;
-use crate::cluster::submission::{Queued, Submission};
+use crate::cluster::submission::{self, Queued};
 use crate::input::units::{self, Dimension};
 use crate::job::Job;
 use crate::job::cost::Costs;
@@ -29,6 +28,11 @@ use crate::study::Study;
 
 /// Memory of a task beside its jobs, bytes. Chosen: the program with the plan of a large study.
 const PROGRAM_MEMORY: u64 = 500_000_000;
+
+/// Time of a task by the estimate, s. Chosen: long against the start of a task, short against the wait for the last one.
+const TASK_SECONDS: f64 = 600.0;
+/// Estimated time over the wall time of a task, at most. Chosen: estimates and machines differ by a factor of two.
+const MAX_ESTIMATE_RATIO: f64 = 0.4;
 
 /// A scheduler.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -76,7 +80,7 @@ pub struct Args {
 
 /// What is submitted.
 struct Tasks {
-    chunks: Vec<Vec<crate::job::JobId>>,
+    number: usize,
     needs: Needs,
     jobs: usize,
     /// Estimated time on one core, s.
@@ -103,38 +107,28 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let tasks = tasks(args, &missing)?;
     let program =
         std::env::current_exe().map_err(|error| disk_error(Path::new("billow"), &error))?;
-    let scripts = |submission: &str| {
-        let (tasks, needs) = (tasks.chunks.len(), &tasks.needs);
-        let (program, root) = (program.clone(), root.clone());
-        let scripts = Scripts { program, root, study: &study.name, submission, tasks, needs };
-        (scripts.array(), scripts.merge())
-    };
+    let (number, needs) = (tasks.number, &tasks.needs);
+    let scripts = Scripts { program, root: root.clone(), study: &study.name, tasks: number, needs };
+    let (array, merge) = (scripts.array(), scripts.merge());
     if args.dry_run || missing.is_empty() {
-        let (array, merge) = scripts("0001");
         let texts = (!missing.is_empty()).then_some([array.as_str(), merge.as_str()]);
         return print_scripts(&tasks, &study.name, texts, args.output.format(), out);
     }
-    let submission = merge::prepare(&results, (&study.name, &study.resolved()), &|results| {
-        Submission::create(results, &tasks.chunks)
-    })?;
-    let (array, merge) = scripts(&submission.name);
-    let array = submission.write(&results, "array.sh", &array)?;
-    let merge = submission.write(&results, "merge.sh", &merge)?;
+    merge::prepare(&results, (&study.name, &study.resolved()))?;
+    let array = submission::write(&results, "array.sh", &array)?;
+    let merge = submission::write(&results, "merge.sh", &merge)?;
     let queued = slurm::submit(&array, &merge)?;
-    submission.write_queued(&results, &queued)?;
-    print(&tasks, &study.name, &submission, &queued, args.output.format(), out)
+    submission::write_queued(&results, &queued)?;
+    print(&tasks, &study.name, &results, &queued, args.output.format(), out)
 }
 
 /// Refuses a submission while the last one is in the queue.
 fn refuse_queued(results: &Results<'_>) -> Result<()> {
-    let Some((last, queued)) = Submission::last_queued(results)? else { return Ok(()) };
+    let Some(queued) = submission::last_queued(results)? else { return Ok(()) };
     let tasks: usize = match slurm::queue(&queued) {
         Ok(states) => states.values().sum(),
         Err(problem) => {
-            eprintln!(
-                "note: squeue does not say whether submission {} has ended: {problem}",
-                last.name
-            );
+            eprintln!("note: squeue does not say whether the last submission has ended: {problem}");
             0
         }
     };
@@ -142,9 +136,9 @@ fn refuse_queued(results: &Results<'_>) -> Result<()> {
         return Ok(());
     }
     Err(Error::Disk {
-        path: last.folder,
+        path: results.submission_path(),
         problem: format!(
-            "{} of this submission are still in the queue\n  next: billow status {}; or scancel {} {}, then submit again",
+            "{} of the last submission are still in the queue\n  next: billow status {}; or scancel {} {}, then submit again",
             count(tasks, "task"),
             results.root().display(),
             queued.array,
@@ -171,7 +165,7 @@ fn missing(study: &Study, results: &Results<'_>) -> Result<Vec<Job>> {
     Ok(jobs)
 }
 
-/// Shares the jobs out among tasks.
+/// Number and needs of the tasks for these jobs.
 fn tasks(args: &Args, missing: &[Job]) -> Result<Tasks> {
     let wall_time = quantity("--time", &args.time, Dimension::Time)?;
     let positive = |option: &str, number: usize| match number {
@@ -181,16 +175,17 @@ fn tasks(args: &Args, missing: &[Job]) -> Result<Tasks> {
     let cores = positive("--cpus", args.cpus)?;
     let mut costs = Costs::default();
     let mut memory: BTreeMap<u64, usize> = BTreeMap::new();
-    let costed: Vec<CostedJob> = missing
-        .iter()
-        .map(|job| {
-            *memory.entry(estimate(&job.scene).total).or_default() += 1;
-            CostedJob { id: job.id.clone(), seconds: costs.seconds(&job.scene) }
-        })
-        .collect();
+    let mut seconds = 0.0;
+    for job in missing {
+        *memory.entry(estimate(&job.scene).total).or_default() += 1;
+        seconds += costs.seconds(&job.scene);
+    }
     let most = slurm::max_tasks();
     let number = match args.tasks {
-        None => chunks::number(&costed, cores, wall_time, most),
+        None => wanted_tasks(seconds, cores, wall_time)
+            .min(missing.len().div_ceil(cores))
+            .min(most)
+            .max(1),
         Some(number) if positive("--tasks", number)? <= most => number.min(missing.len().max(1)),
         Some(number) => {
             let allowed = format!("1 to {most}: MaxArraySize of the cluster less one");
@@ -214,9 +209,21 @@ fn tasks(args: &Args, missing: &[Job]) -> Result<Tasks> {
         memory,
         options: args.sbatch.clone(),
     };
-    let chunks = if missing.is_empty() { Vec::new() } else { chunks::share(&costed, number) };
-    let seconds = costed.iter().map(|job| job.seconds).sum();
-    Ok(Tasks { chunks, needs, jobs: missing.len(), seconds })
+    let number = if missing.is_empty() { 0 } else { number };
+    Ok(Tasks { number, needs, jobs: missing.len(), seconds })
+}
+
+/// Number of tasks for jobs that take this time (s in all, on one core), on this number of cores each with this wall
+/// time (s).
+fn wanted_tasks(seconds: f64, cores: usize, wall_time: f64) -> usize {
+    let each = TASK_SECONDS.min(MAX_ESTIMATE_RATIO * wall_time) * cores as f64;
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "at least 1, and saturates"
+    )]
+    let wanted = libm::ceil(seconds / each).max(1.0) as usize;
+    wanted
 }
 
 /// Memory of this number of jobs side by side at most, bytes: of the jobs with these sizes.
@@ -249,7 +256,7 @@ impl Tasks {
         format!(
             "{study}: {} in {}, about {} on one core",
             count(self.jobs, "job"),
-            count(self.chunks.len(), "task"),
+            count(self.number, "task"),
             duration(libm::ceil(self.seconds))
         )
     }
@@ -268,7 +275,7 @@ fn print_scripts(
         let json = serde_json::json!({
             "study": study,
             "jobs": tasks.jobs,
-            "tasks": tasks.chunks.len(),
+            "tasks": tasks.number,
             "estimated_seconds": tasks.seconds,
             "array_script": array,
             "merge_script": merge,
@@ -278,8 +285,8 @@ fn print_scripts(
     if let Some([array, merge]) = scripts {
         write!(
             out,
-            "# array.sh\n{array}\n# merge.sh\n{merge}\n# billow submit gives them to Slurm, after it has written the jobs of each \
-             task (chunks.json):\n#   sbatch --parsable array.sh\n#   sbatch --parsable --dependency=afterany:NUMBER merge.sh\n"
+            "# array.sh\n{array}\n# merge.sh\n{merge}\n# billow submit gives them to Slurm, after it has \
+             written study.json:\n#   sbatch --parsable array.sh\n#   sbatch --parsable --dependency=afterany:NUMBER merge.sh\n"
         )
         .map_err(output_error)?;
     }
@@ -290,20 +297,20 @@ fn print_scripts(
 fn print(
     tasks: &Tasks,
     study: &str,
-    submission: &Submission,
+    results: &Results<'_>,
     queued: &Queued,
     format: Format,
     out: &mut dyn Write,
 ) -> Result<()> {
-    let folder = submission.folder.display();
+    let folder = results.submission_path();
+    let folder = folder.display();
     let Queued { array, merge } = queued;
     let written = if format == Format::Json {
         let json = serde_json::json!({
             "study": study,
-            "submission": submission.name,
             "folder": folder.to_string(),
             "jobs": tasks.jobs,
-            "tasks": tasks.chunks.len(),
+            "tasks": tasks.number,
             "estimated_seconds": tasks.seconds,
             "array": array,
             "merge": merge,

@@ -3,6 +3,8 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use crate::store::results::{PARTS, SUBMISSION};
+
 /// Time before the end of its wall time at which a task is asked to stop, s. Chosen: far more than the 2 s that a run takes
 /// to stop; Slurm may ask up to a minute earlier.
 const WARNING: u32 = 60;
@@ -31,8 +33,6 @@ pub struct Scripts<'a> {
     pub root: PathBuf,
     /// Name of the study.
     pub study: &'a str,
-    /// Name of the submission.
-    pub submission: &'a str,
     /// Number of tasks.
     pub tasks: usize,
     /// What a task needs.
@@ -48,13 +48,13 @@ impl Scripts<'_> {
         // The signal goes to the shell of the script, which the program replaces.
         let _ = writeln!(text, "#SBATCH --signal=B:USR1@{WARNING}");
         text += "#SBATCH --requeue\n\n";
-        text += "# Each task runs one chunk of the jobs. What it does not finish is in the next submission.\n";
+        text += "# Each task runs one part of the jobs. What it does not finish is in the next submission.\n";
+        let (root, tasks) = (quoted(&self.root), self.tasks);
         let _ = writeln!(
             text,
-            "exec {} run {} --shared --chunk {}/\"$SLURM_ARRAY_TASK_ID\" --threads {cores} --quiet",
+            "exec {} run {root} --points \"$SLURM_ARRAY_TASK_ID/{tasks}\" \\\n  --results \
+             {root}/{PARTS}/\"$SLURM_ARRAY_TASK_ID-{tasks}\" --threads {cores} --quiet",
             quoted(&self.program),
-            quoted(&self.root),
-            self.submission,
         );
         text
     }
@@ -64,13 +64,13 @@ impl Scripts<'_> {
         const MEMORY: u64 = 2_000_000_000;
         let memory = self.needs.memory.max(MEMORY);
         let mut text = self.head("-merge", self.needs.wall_time, 1, memory, "merge.txt");
-        text += "\n# Writes the table, when no task is left.\n";
+        text += "\n# Joins the results of the tasks, when all have ended.\n";
         let _ = writeln!(text, "exec {} merge {}", quoted(&self.program), quoted(&self.root));
         text
     }
 
     fn head(&self, end: &str, wall_time: f64, cores: usize, memory: u64, output: &str) -> String {
-        let folder = self.root.join("submissions").join(self.submission);
+        let folder = self.root.join(SUBMISSION);
         let name: String = self
             .study
             .chars()
@@ -135,13 +135,12 @@ mod tests {
     }
 
     #[test]
-    fn a_task_runs_its_chunk_and_is_asked_to_stop_in_time() {
+    fn a_task_runs_its_part_and_is_asked_to_stop_in_time() {
         let needs = needs();
         let scripts = Scripts {
             program: "/opt/billow/billow".into(),
             root: "/data/my study".into(),
             study: "my study",
-            submission: "0001",
             tasks: 12,
             needs: &needs,
         };
@@ -156,8 +155,8 @@ mod tests {
             "#SBATCH --partition=short",
             "#SBATCH --account=film",
             "#SBATCH --signal=B:USR1@60",
-            "exec /opt/billow/billow run '/data/my study' --shared --chunk 0001/\"$SLURM_ARRAY_TASK_ID\" \
-             --threads 2 --quiet",
+            "exec /opt/billow/billow run '/data/my study' --points \"$SLURM_ARRAY_TASK_ID/12\" \\",
+            "  --results '/data/my study'/parts/\"$SLURM_ARRAY_TASK_ID-12\" --threads 2 --quiet",
         ] {
             assert!(text.lines().any(|found| found == line), "{line}\n{text}");
         }

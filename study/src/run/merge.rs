@@ -1,7 +1,6 @@
-//! Joins what several runs have stored: the end of runs that shared a folder, and folders of parts of one study.
+//! Joins what several runs have stored: folders of parts of one study.
 
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
 use crate::input::study_file::Json;
 use crate::job::JobId;
@@ -16,43 +15,8 @@ use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::store::table::Table;
 
-/// Time between two looks at runs that share a folder. Chosen: a signal still ends the command within 2 s.
-const WAIT: Duration = Duration::from_millis(500);
 /// Records that are written with one sync. Chosen: few syncs, little memory.
 const RECORDS_PER_SYNC: usize = 256;
-
-/// Waits until no run shares the folder any more, at most for `limit`; returns early at a stop request.
-///
-/// # Errors
-/// [`Error::Disk`] when runs are still alive then.
-pub fn wait_for_runs(results: &Results<'_>, limit: Duration, stop: &Stop) -> Result<()> {
-    let start = Instant::now();
-    while stop.requested().is_none() && start.elapsed() < limit && !results.live_runs()?.is_empty()
-    {
-        std::thread::sleep(WAIT);
-    }
-    if stop.requested().is_some() { Ok(()) } else { results.refuse_live_runs() }
-}
-
-/// Repairs what runs that shared the folder left, and writes the table.
-///
-/// # Errors
-/// [`Error::Disk`], also when another command holds the lock.
-pub fn finish(results: &Results<'_>) -> Result<()> {
-    let _lock = results.lock()?;
-    alone::open(results, None)?;
-    write_table(results)
-}
-
-/// [`finish`] for a run that has ended, unless other runs or commands work in the folder: the last of them does it.
-///
-/// # Errors
-/// [`Error::Disk`].
-pub fn finish_if_last(results: &Results<'_>) -> Result<()> {
-    let Some(_lock) = results.lock_if_free()? else { return Ok(()) };
-    alone::open(results, None)?;
-    write_table(results)
-}
 
 fn write_table(results: &Results<'_>) -> Result<()> {
     let stored = Stored::read(results.clone())?;
@@ -60,19 +24,13 @@ fn write_table(results: &Results<'_>) -> Result<()> {
     results.write_table(&Table::of_study(study, points, &journal.records)).map(|_| ())
 }
 
-/// Makes a folder ready for runs that share it, and writes more into it under the same lock: nothing of dead runs remains,
-/// and study.json is that of this study.
+/// Makes a folder ready for parts of this study, whose runs read its study.json.
 ///
 /// # Errors
 /// [`Error::Disk`], also when another command holds the lock.
-pub fn prepare<T>(
-    results: &Results<'_>,
-    study: (&str, &Json),
-    write: &dyn Fn(&Results<'_>) -> Result<T>,
-) -> Result<T> {
+pub fn prepare(results: &Results<'_>, study: (&str, &Json)) -> Result<()> {
     let _lock = results.lock()?;
-    alone::open(results, Some(study))?;
-    write(results)
+    alone::open(results, Some(study)).map(|_| ())
 }
 
 /// What a merge of folders did.

@@ -7,8 +7,6 @@
 //! {"checksum":"…","job":"<id>","progressed":true}       it stored a checkpoint
 //! ```
 //!
-//! A run that shares the folder has a file of its own, `claims/<process>.attempts` ([`crate::store::claims`]).
-//!
 //! The file exists while a run goes on. A run that ends in order, also after a signal or an error, removes
 //! it. If it is there when the next run takes the lock, its process died: the started jobs without a record
 //! were running then ([`take_deaths`]). A job that stored a checkpoint in that process is not to blame: it
@@ -17,7 +15,7 @@
 
 use std::collections::BTreeSet;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::SystemTime;
 
 use billow_solver::platform::seal;
@@ -53,12 +51,7 @@ struct Line {
 impl<'a> Attempts<'a> {
     /// The attempts of a process that holds the lock of the results, after [`take_deaths`].
     pub fn new(results: &Results<'a>) -> Self {
-        Self::at(results, results.attempts_path())
-    }
-
-    /// The attempts of a process that shares the results, in a file of its own.
-    pub fn at(results: &Results<'a>, path: PathBuf) -> Self {
-        Self { files: results.files(), path, open: None, ended: false }
+        Self { files: results.files(), path: results.attempts_path(), open: None, ended: false }
     }
 
     /// Records that these jobs are about to start. When this returns, a death of the process cannot undo
@@ -119,7 +112,7 @@ impl Drop for Attempts<'_> {
     }
 }
 
-/// Records in the journal which jobs dead processes were running, and removes their files. Only for the process
+/// Records in the journal which jobs a dead process was running, and removes its file. Only for the process
 /// that holds the lock. A job that has a record since is no such job.
 ///
 /// # Errors
@@ -129,22 +122,11 @@ pub fn take_deaths(
     journal: &mut Journal,
     writer: &mut Writer<'_>,
 ) -> Result<()> {
-    let mut paths = results.take_dead_runs()?;
-    paths.push(results.attempts_path());
-    paths.iter().try_for_each(|path| take_deaths_of(results, path, journal, writer))
-}
-
-/// [`take_deaths`] of one file.
-fn take_deaths_of(
-    results: &Results<'_>,
-    path: &Path,
-    journal: &mut Journal,
-    writer: &mut Writer<'_>,
-) -> Result<()> {
-    let bytes = match results.files().read(path) {
+    let path = results.attempts_path();
+    let bytes = match results.files().read(&path) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-        Err(error) => return Err(disk_error(path, &error)),
+        Err(error) => return Err(disk_error(&path, &error)),
     };
     let deaths = deaths(&bytes, journal);
     if !deaths.is_empty() {
@@ -153,7 +135,7 @@ fn take_deaths_of(
     for death in deaths {
         journal.add_death(death);
     }
-    results.files().remove(path).map_err(|error| disk_error(path, &error))
+    results.files().remove(&path).map_err(|error| disk_error(&path, &error))
 }
 
 /// The jobs that a process with this file was running when it died. Lines that are not valid are ignored:

@@ -1,9 +1,8 @@
-//! What a study stores on disk: journal, history files, static references, checkpoints, claims, summary table;
+//! What a study stores on disk: journal, history files, static references, checkpoints, summary table;
 //! the cube, which is all of them in one file; and the check of a results folder.
 
 pub mod attempts;
 pub mod checkpoint_file;
-pub mod claims;
 pub mod cube;
 pub mod damaged;
 pub mod doctor;

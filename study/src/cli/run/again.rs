@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::{Args, Scope, run_study};
+use super::{Args, run_study};
 use crate::cli::print::{count, print_rows};
 use crate::input::value::Value;
 use crate::job::point::Point;
@@ -13,6 +13,7 @@ use crate::job::row::{Cells, ColumnId};
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::Disk;
+use crate::run::selection::Selection;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::study::{Study, plan};
@@ -42,7 +43,7 @@ pub(super) fn run(args: &Args, root: &Path, out: &mut dyn Write) -> Result<()> {
     if !args.options.progress.quiet {
         eprintln!("{} to run again", count(jobs.len(), "job"));
     }
-    run_study(&stored.study, root, Some(&jobs), Scope::default(), &args.options, out)
+    run_study(&stored.study, root, Some(&jobs), Selection::All, &args.options, out)
 }
 
 /// The jobs with these ids or statuses.
@@ -110,15 +111,10 @@ fn run_changed(
         })?;
         let root = beside(stored.results.root());
         let only = BTreeSet::from([found.job.id.clone()]);
-        run_study(
-            &study,
-            &root,
-            Some(&only),
-            Scope::default(),
-            &args.options,
-            &mut std::io::sink(),
-        )
-        .or_else(|error| if matches!(error, Error::JobsFailed(_)) { Ok(()) } else { Err(error) })?;
+        run_study(&study, &root, Some(&only), Selection::All, &args.options, &mut std::io::sink())
+            .or_else(
+                |error| if matches!(error, Error::JobsFailed(_)) { Ok(()) } else { Err(error) },
+            )?;
         let again = Stored::read(Results::new(&Disk, &root))?;
         changed.push((id, found.job.id.clone(), again.cells_of_job(&found.job.id)));
     }

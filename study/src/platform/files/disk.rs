@@ -75,11 +75,6 @@ impl Files for Disk {
         taken(file.try_lock(), file)
     }
 
-    fn try_lock_shared(&self, path: &Path) -> io::Result<Option<Lock>> {
-        let file = open_lock(path)?;
-        taken(file.try_lock_shared(), file)
-    }
-
     fn is_locked(&self, path: &Path) -> io::Result<bool> {
         let opened = OpenOptions::new().read(true).custom_flags(libc::O_NOFOLLOW).open(path);
         let file = match opened {
@@ -92,16 +87,6 @@ impl Files for Disk {
             Err(TryLockError::WouldBlock) => Ok(true),
             Err(TryLockError::Error(error)) => Err(error),
         }
-    }
-
-    fn link(&self, existing: &Path, name: &Path) -> io::Result<()> {
-        fs::hard_link(existing, name)
-    }
-
-    fn overwrite(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
-        let mut file = OpenOptions::new().write(true).open(path)?;
-        file.write_all(bytes)?;
-        file.sync_all()
     }
 }
 
@@ -181,18 +166,5 @@ mod tests {
         assert!(!Disk.is_locked(&path).unwrap());
         assert!(!Disk.is_locked(&folder.path().join("none")).unwrap());
         assert!(Disk.try_lock(&path).unwrap().is_some());
-    }
-
-    #[test]
-    fn a_shared_lock_is_held_by_several_and_keeps_out_one_that_wants_it_alone() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("lock");
-        let first = Disk.try_lock_shared(&path).unwrap();
-        let second = Disk.try_lock_shared(&path).unwrap();
-        assert!(first.is_some() && second.is_some());
-        assert!(Disk.try_lock(&path).unwrap().is_none());
-        drop((first, second));
-        let alone = Disk.try_lock(&path).unwrap();
-        assert!(alone.is_some() && Disk.try_lock_shared(&path).unwrap().is_none());
     }
 }

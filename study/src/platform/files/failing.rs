@@ -99,23 +99,8 @@ impl Files for FailingFiles {
         Disk.try_lock(path)
     }
 
-    fn try_lock_shared(&self, path: &Path) -> io::Result<Option<Lock>> {
-        self.step()?;
-        Disk.try_lock_shared(path)
-    }
-
     fn is_locked(&self, path: &Path) -> io::Result<bool> {
         Disk.is_locked(path)
-    }
-
-    fn link(&self, existing: &Path, name: &Path) -> io::Result<()> {
-        self.step()?;
-        Disk.link(existing, name)
-    }
-
-    fn overwrite(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
-        self.step()?;
-        Disk.overwrite(path, bytes)
     }
 }
 

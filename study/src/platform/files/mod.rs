@@ -97,32 +97,12 @@ pub trait Files: Send + Sync {
     /// The error of the system.
     fn try_lock(&self, path: &Path) -> io::Result<Option<Lock>>;
 
-    /// Takes the lock of that file together with others that take it so; `None` when another process holds it
-    /// alone.
-    ///
-    /// # Errors
-    /// The error of the system; `Unsupported` on a file system without locks.
-    fn try_lock_shared(&self, path: &Path) -> io::Result<Option<Lock>>;
-
-    /// Whether another process holds the lock of that file alone. The check takes a shared lock for an
+    /// Whether another process holds the lock of that file. The check takes a shared lock for an
     /// instant; a process that takes the lock at that moment must try again.
     ///
     /// # Errors
     /// The error of the system.
     fn is_locked(&self, path: &Path) -> io::Result<bool>;
-
-    /// Gives an existing file a second name; the error `AlreadyExists` when there is a file of that name. Of several
-    /// processes that give the same name, also on several machines, one succeeds.
-    ///
-    /// # Errors
-    /// The error of the system.
-    fn link(&self, existing: &Path, name: &Path) -> io::Result<()>;
-
-    /// Writes the first bytes of an existing file again, so that the file server sets its time.
-    ///
-    /// # Errors
-    /// The error of the system.
-    fn overwrite(&self, path: &Path, bytes: &[u8]) -> io::Result<()>;
 }
 
 /// Size and time of a file: when both are those of its writing, it was hardly changed since.
@@ -210,14 +190,6 @@ const PART: usize = 64 << 10;
 /// The text of /proc/self/status; `None` where the system has none.
 pub fn process_status() -> Option<String> {
     fs::read_to_string("/proc/self/status").ok()
-}
-
-/// Name of this machine, with letters, digits, dots and dashes only; "machine" where the system does not say.
-pub fn host_name() -> String {
-    let text = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
-    let is_plain = |letter: &char| letter.is_ascii_alphanumeric() || ".-".contains(*letter);
-    let name: String = text.trim().chars().filter(is_plain).collect();
-    if name.is_empty() { "machine".to_owned() } else { name }
 }
 
 /// The path in the same folder whose name is nearest to that of a path that does not exist; also with

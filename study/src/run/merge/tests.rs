@@ -1,4 +1,4 @@
-//! Parts of a study, runs that share a folder, and what cannot be merged.
+//! Parts of a study, and what cannot be merged.
 
 #![expect(clippy::disallowed_methods, reason = "tests read and write files directly")]
 
@@ -11,9 +11,8 @@ use crate::job::limits::JobLimits;
 use crate::platform::files::Disk;
 use crate::run::event::Silent;
 use crate::run::fixture::{Scripted, ran};
-use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run, Shared, Summary};
+use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run, Summary};
 use crate::run::selection::{Part, Selection};
-use crate::store::claims::LEASE;
 use crate::study::finished::FinishedRow;
 use crate::study::plan;
 use crate::study::{PlanSize, Study};
@@ -31,7 +30,7 @@ fn study() -> Study {
 }
 
 /// Runs a part of it with invented results.
-fn run_part(study: &Study, root: &Path, selection: Selection, shared: Option<Shared>) -> Summary {
+fn run_part(study: &Study, root: &Path, selection: Selection) -> Summary {
     let executor = Scripted::new(ran);
     let run = Run {
         name: &study.name,
@@ -48,7 +47,7 @@ fn run_part(study: &Study, root: &Path, selection: Selection, shared: Option<Sha
         stop: Stop::new(),
         rerun: None,
         selection,
-        shared,
+        known: Results::new(&Disk, root).known().unwrap(),
     };
     runner::run(&run, &mut Silent).unwrap()
 }
@@ -71,11 +70,10 @@ fn parts_in_folders_of_their_own_give_the_table_of_the_whole() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     let study = study();
-    run_part(&study, &path("whole"), Selection::All, None);
+    run_part(&study, &path("whole"), Selection::All);
     let mut ran = 0;
     for number in 1..=3 {
-        let summary =
-            run_part(&study, &path(&number.to_string()), part(&format!("{number}/3")), None);
+        let summary = run_part(&study, &path(&number.to_string()), part(&format!("{number}/3")));
         assert_eq!(summary.ran + summary.not_selected, 8);
         ran += summary.ran;
     }
@@ -91,7 +89,7 @@ fn parts_in_folders_of_their_own_give_the_table_of_the_whole() {
     // A second time there is nothing to copy, and a run finds nothing to do.
     let again = merge(&sources, &target, (&study.name, &resolved), &Stop::new()).unwrap();
     assert_eq!(again, Merged { same: 8, ..Merged::default() });
-    assert_eq!(run_part(&study, &path("all"), Selection::All, None).ran, 0);
+    assert_eq!(run_part(&study, &path("all"), Selection::All).ran, 0);
 }
 
 #[test]
@@ -100,8 +98,8 @@ fn other_studies_other_bits_and_damaged_histories_are_named() {
     let path = |name: &str| folder.path().join(name);
     let study = study();
     let resolved = study.resolved();
-    run_part(&study, &path("one"), Selection::All, None);
-    run_part(&study, &path("two"), part("1/2"), None);
+    run_part(&study, &path("one"), Selection::All);
+    run_part(&study, &path("two"), part("1/2"));
     let sources = [path("one")];
     let sources: Vec<Results<'_>> = sources.iter().map(|path| Results::new(&Disk, path)).collect();
     let (new, two) = (path("new"), path("two"));
@@ -124,63 +122,4 @@ fn other_studies_other_bits_and_damaged_histories_are_named() {
         (merged.different, merged.damaged),
         (vec![changed], vec![sources[0].job_path(damaged)])
     );
-}
-
-#[test]
-fn runs_that_share_a_folder_run_each_job_once_and_give_the_table_of_one() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = |name: &str| folder.path().join(name);
-    let study = study();
-    run_part(&study, &path("whole"), Selection::All, None);
-    let root = path("shared");
-    let ran: usize = std::thread::scope(|scope| {
-        let run = |number: usize| {
-            let shared = Shared { owner: format!("run{number}"), lease: LEASE };
-            run_part(&study, &root, Selection::All, Some(shared)).ran
-        };
-        let runs: Vec<_> = (0..4).map(|number| scope.spawn(move || run(number))).collect();
-        runs.into_iter().map(|run| run.join().unwrap()).sum()
-    });
-    assert_eq!(ran, 8);
-    let results = Results::new(&Disk, &root);
-    assert!(!results.table_path().exists() && results.live_runs().unwrap().is_empty());
-    assert!(results.journal().unwrap().faults.is_empty());
-    finish(&results).unwrap();
-    assert_eq!(table(&root), table(&path("whole")));
-    assert_eq!(fs::read_dir(results.claims_path()).unwrap().count(), 0);
-}
-
-#[test]
-fn a_run_takes_over_the_jobs_of_a_dead_one_and_leaves_those_of_a_live_one() {
-    let folder = tempfile::tempdir().unwrap();
-    let study = study();
-    let results = Results::new(&Disk, folder.path());
-    let plan = plan::next_jobs(&study, &[]).unwrap();
-    let id = |number: usize| plan.points[number].job.id.clone();
-    let lease = std::time::Duration::from_secs(2);
-    let claims = |owner| crate::store::claims::Claims::new(&results, owner, lease).unwrap();
-    let (mut dead, mut live) = (claims("dead"), claims("live"));
-    dead.take(&id(0)).unwrap();
-    live.take(&id(1)).unwrap();
-    std::mem::forget(dead);
-    let over = std::sync::atomic::AtomicBool::new(false);
-    let summary = std::thread::scope(|scope| {
-        let (over, live) = (&over, &mut live);
-        scope.spawn(move || {
-            while !over.load(std::sync::atomic::Ordering::SeqCst) {
-                live.renew().unwrap();
-                std::thread::sleep(std::time::Duration::from_millis(100));
-            }
-        });
-        let shared = Shared { owner: "this".to_owned(), lease };
-        let summary = run_part(&study, folder.path(), Selection::All, Some(shared));
-        over.store(true, std::sync::atomic::Ordering::SeqCst);
-        summary
-    });
-    assert_eq!((summary.ran, summary.counts.of(crate::job::Status::Pending)), (7, 1));
-    let journal = results.journal().unwrap();
-    assert!(journal.records.contains_key(&id(0)) && !journal.records.contains_key(&id(1)));
-    assert!(finish(&results).unwrap_err().to_string().contains("live"));
-    finish_if_last(&results).unwrap();
-    assert!(!results.table_path().exists(), "another run is alive");
 }

@@ -92,7 +92,7 @@ fn run_with(
         stop: stop.clone(),
         rerun: ids.as_ref(),
         selection: Selection::All,
-        shared: None,
+        known: BTreeMap::new(),
     };
     let mut notes = Notes(Vec::new());
     let summary = run(&study, &mut notes).unwrap();

@@ -6,9 +6,6 @@
 //! the same bits. A worker writes only the line of its attempt and the checkpoints of its job
 //! (`attempt_log`).
 //!
-//! Where several runs share the folder ([`Run::shared`], `sharing`), a worker claims each job first, and no run repairs
-//! the folder or writes the table: [`crate::run::merge::finish`] does, when no run is left.
-//!
 //! A job that is run again ([`Run::rerun`]) keeps its record until its new result is stored. Its new history is
 //! compared with the hash of the old one.
 
@@ -36,13 +33,10 @@ use crate::study::plan::Generation;
 
 mod attempt_log;
 mod quarantine;
-mod sharing;
 mod state;
 mod workers;
 
 use attempt_log::AttemptLog;
-pub use sharing::Shared;
-use sharing::Sharing;
 use state::State;
 
 /// Time between two checkpoints of a job, at least. Chosen: a crash loses little, and a short job has none.
@@ -81,8 +75,8 @@ pub struct Run<'a> {
     pub rerun: Option<&'a BTreeSet<JobId>>,
     /// The jobs of the plan that this run takes.
     pub selection: Selection,
-    /// How other runs may work in the folder at the same time; `None` for a run that is alone.
-    pub shared: Option<Shared>,
+    /// Jobs that have ended in the results of which these are a part: they do not run again.
+    pub known: BTreeMap<JobId, Record>,
 }
 
 /// Result of a run.
@@ -100,8 +94,6 @@ pub struct Summary {
     pub different: Vec<JobId>,
     /// Number of unfinished jobs that are not in this run's selection.
     pub not_selected: usize,
-    /// Number of jobs that other runs have ended while this one ran.
-    pub ended_elsewhere: usize,
 }
 
 /// Runs the jobs of a study that are not finished.
@@ -110,40 +102,16 @@ pub struct Summary {
 /// [`crate::platform::error::Error::Disk`] when results cannot be read or stored. Jobs that were
 /// stored before are kept.
 pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
-    match &run.shared {
-        None => run_alone(run, reporter),
-        Some(shared) => run_shared(run, shared, reporter),
-    }
-}
-
-/// [`run`] with the folder for itself.
-fn run_alone(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
     let lock = run.results.lock()?;
     let alone = alone::open(&run.results, Some((run.name, run.study)))?;
     for fault in &alone.faults {
         reporter.event(&Event::Note(fault.to_string()));
     }
-    let log = AttemptLog::alone(&run.results, &lock, alone.writer)?;
+    let log = AttemptLog::new(&run.results, &lock, alone.writer)?;
     let mut state = State::new(run, &log, alone.journal);
     state.remove_checkpoints()?;
     run_generations(run, &mut state, reporter)?;
     state.write_table()?;
-    reporter.event(&Event::Ended);
-    Ok(state.summary())
-}
-
-/// [`run`] with other runs in the folder: it changes nothing that they may be using.
-fn run_shared(run: &Run<'_>, shared: &Shared, reporter: &mut dyn Reporter) -> Result<Summary> {
-    let lock = run.results.lock_shared()?;
-    let sharing = Sharing::new(&run.results, shared)?;
-    let mut journal = run.results.journal()?;
-    let study = run.results.write_shared_study(run.name, run.study, &journal)?;
-    // Another run may be writing a line that is not complete yet.
-    journal.faults.clear();
-    let log = AttemptLog::shared(&run.results, lock.as_ref(), sharing)?;
-    let mut state = State::new(run, &log, journal);
-    state.record_study(&study)?;
-    run_generations(run, &mut state, reporter)?;
     reporter.event(&Event::Ended);
     Ok(state.summary())
 }

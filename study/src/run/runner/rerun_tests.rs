@@ -51,7 +51,7 @@ fn run_on<S: Fn(u32) -> Outcome + Sync>(
         stop: Stop::new(),
         rerun: ids.as_ref(),
         selection: Selection::All,
-        shared: None,
+        known: BTreeMap::new(),
     };
     let ended = run(&study, &mut Silent);
     (ended, executor.executed.load(Ordering::SeqCst))

@@ -30,13 +30,11 @@ mod dispatch;
 pub(super) struct State<'a, 'w> {
     run: &'a Run<'a>,
     log: &'a AttemptLog<'w>,
-    /// The text of study.json that the journal has.
-    recorded_study: Option<String>,
     /// Old records of jobs that must run again, for comparison.
     old_records: BTreeMap<JobId, Record>,
     /// Records of the journals that are not yet checked against their files.
     recorded: BTreeMap<JobId, Record>,
-    /// Records of planned jobs, with undamaged files.
+    /// Records of planned jobs, with undamaged files, and those of [`Run::known`].
     records: BTreeMap<JobId, Record>,
     /// Deaths of earlier processes.
     deaths: Deaths,
@@ -53,26 +51,15 @@ impl<'a, 'w> State<'a, 'w> {
         Self {
             run,
             log,
-            recorded_study: journal.study,
             old_records: journal.invalidated,
             recorded: journal.records,
-            records: BTreeMap::new(),
+            records: run.known.clone(),
             deaths: Deaths::new(journal.deaths),
             points: Vec::new(),
             summary: Summary::default(),
             table_due: Instant::now() + MIN_TABLE_INTERVAL,
             table_outdated: true,
         }
-    }
-
-    /// Records the text of study.json, unless the journal has it.
-    pub(super) fn record_study(&mut self, text: &str) -> Result<()> {
-        if self.recorded_study.as_deref() == Some(text) {
-            return Ok(());
-        }
-        self.log.writer().study(text)?;
-        self.recorded_study = Some(text.to_owned());
-        Ok(())
     }
 
     /// Removes the checkpoints of jobs that have ended: those of a process that died in between.
@@ -103,7 +90,7 @@ impl<'a, 'w> State<'a, 'w> {
             if !self.must_run(id, again, reporter)? {
                 continue;
             }
-            if self.run.selection.takes(number, id) {
+            if self.run.selection.takes(number) {
                 missing.push(point.job.clone());
             } else {
                 self.summary.not_selected += 1;
@@ -211,13 +198,12 @@ impl<'a, 'w> State<'a, 'w> {
                     self.log.remove(&record.job)?;
                 }
             }
-            self.log.release(records.iter().map(|record| &record.job))?;
             self.records.extend(records.into_iter().map(|record| (record.job.clone(), record)));
         }
         for event in &events {
             reporter.event(event);
         }
-        if Instant::now() >= self.table_due && !self.log.is_shared() {
+        if Instant::now() >= self.table_due {
             self.write_table()?;
         }
         Ok(())

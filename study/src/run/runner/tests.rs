@@ -77,7 +77,7 @@ fn run_on(
         stop: Stop::new(),
         rerun: None,
         selection: Selection::All,
-        shared: None,
+        known: BTreeMap::new(),
     };
     run(&study, reporter)
 }
@@ -306,7 +306,7 @@ fn a_stop_keeps_finished_jobs_and_shows_the_others_as_pending() {
         stop: stop.clone(),
         rerun: None,
         selection: Selection::All,
-        shared: None,
+        known: BTreeMap::new(),
     };
     let summary = run(&study, &mut Silent).unwrap();
     assert_eq!(summary.signal, Some(2));
@@ -348,7 +348,7 @@ fn a_resumed_study_plans_its_generations_again() {
             stop: Stop::new(),
             rerun: None,
             selection: Selection::All,
-            shared: None,
+            known: BTreeMap::new(),
         };
         run(&study, &mut Silent).unwrap();
         assert_eq!(executed(&executor), expected);

@@ -148,11 +148,11 @@ impl WorkerPool<'_, '_> {
         drop(sender);
     }
 
-    /// Runs the jobs of a batch that are not refused and that no other run has, after their attempts are recorded.
+    /// Runs the jobs of a batch that are not refused, after their attempts are recorded.
     fn run(
         &self,
         jobs: &[Job],
-        mut refused: Vec<Option<Outcome>>,
+        refused: Vec<Option<Outcome>>,
         thread: usize,
         sender: &SyncSender<Message>,
     ) -> Result<Vec<Outcome>> {
@@ -160,12 +160,8 @@ impl WorkerPool<'_, '_> {
             |job| JobControl { workers: self, job, thread, sender, clock: Clock::start() };
         let controls: Vec<_> = jobs.iter().map(control).collect();
         let mut tasks = Vec::with_capacity(jobs.len());
-        for (control, refused) in controls.iter().zip(&mut refused) {
+        for (control, refused) in controls.iter().zip(&refused) {
             let job = control.job;
-            if refused.is_none() && !self.log.claim(&job.id)? {
-                // Another run has it: here it leaves no row.
-                *refused = Some(Outcome::Cancelled);
-            }
             if refused.is_none() {
                 self.log.start(&job.id)?;
                 let checkpoint = self.log.checkpoint(&job.id).unwrap_or_else(|error| {

@@ -27,12 +27,10 @@ use crate::job::row::Cells;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Files, Stamp, disk_error};
 
-mod follower;
 mod line;
 mod mend;
 mod writer;
 
-pub use follower::Follower;
 pub use mend::mend;
 pub use writer::Writer;
 

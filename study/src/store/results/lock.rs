@@ -1,7 +1,5 @@
 //! The lock of a results folder: one command at a time changes it.
 
-use std::io;
-use std::path::Path;
 use std::time::Duration;
 
 use super::{OTHER_NAMES, PUBLISHED, RESULT_NAMES, Results};
@@ -15,54 +13,12 @@ const MAX_LOCK_ATTEMPTS: u32 = 5;
 const LOCK_PAUSE: Duration = Duration::from_millis(10);
 
 impl Results<'_> {
-    /// Creates the folder if it is missing, and takes its lock alone.
+    /// Creates the folder if it is missing, and takes its lock.
     ///
     /// # Errors
     /// [`Error::Disk`] when the folder cannot be created, holds other files than results, when another
-    /// command holds the lock, when runs that share the folder are alive, or when the lock is a symbolic link.
+    /// command holds the lock, or when the lock is a symbolic link.
     pub fn lock(&self) -> Result<Lock> {
-        self.prepare_lock()?;
-        // Before the lock: it says which runs hold it.
-        self.refuse_live_runs()?;
-        let lock = self.take_lock(&|path| self.files.try_lock(path))?;
-        let lock = lock.ok_or_else(|| self.is_held())?;
-        // A run on another machine may not see the lock.
-        self.refuse_live_runs()?;
-        Ok(lock)
-    }
-
-    /// The lock alone, as [`Self::lock`]; `None` where another command or a live run works in the folder.
-    ///
-    /// # Errors
-    /// As [`Self::lock`], for other reasons.
-    pub fn lock_if_free(&self) -> Result<Option<Lock>> {
-        self.prepare_lock()?;
-        let lock = self.take_lock(&|path| self.files.try_lock(path))?;
-        Ok(if self.live_runs()?.is_empty() { lock } else { None })
-    }
-
-    /// The lock, as [`Self::lock`], together with other runs that share the folder; `None` on a file system without locks:
-    /// then claims alone keep runs apart.
-    ///
-    /// # Errors
-    /// As [`Self::lock`].
-    pub fn lock_shared(&self) -> Result<Option<Lock>> {
-        self.prepare_lock()?;
-        match self.take_lock(&|path| self.files.try_lock_shared(path)) {
-            Ok(Some(lock)) => Ok(Some(lock)),
-            Ok(None) => Err(self.is_held()),
-            Err(_) if self.has_no_locks() => Ok(None),
-            Err(error) => Err(error),
-        }
-    }
-
-    /// Whether the file system of the folder has no locks.
-    fn has_no_locks(&self) -> bool {
-        let error = self.files.try_lock_shared(&self.lock_path()).err();
-        error.is_some_and(|error| error.kind() == io::ErrorKind::Unsupported)
-    }
-
-    fn prepare_lock(&self) -> Result<()> {
         let created =
             self.files.create_folder(&self.root).map_err(|error| disk_error(&self.root, &error))?;
         if !created {
@@ -73,30 +29,20 @@ impl Results<'_> {
             let problem = "a folder, not a lock\n  next: move it away".to_owned();
             return Err(Error::Disk { path, problem });
         }
-        Ok(())
-    }
-
-    /// The lock; `None` when it is held.
-    fn take_lock(&self, take: &dyn Fn(&Path) -> io::Result<Option<Lock>>) -> Result<Option<Lock>> {
-        let path = self.lock_path();
         // A command that only checks the lock holds it for an instant.
         for _ in 0..MAX_LOCK_ATTEMPTS {
-            let lock = take(&path).map_err(|error| disk_error(&path, &error))?;
-            if lock.is_some() {
+            let lock = self.files.try_lock(&path).map_err(|error| disk_error(&path, &error))?;
+            if let Some(lock) = lock {
                 return Ok(lock);
             }
             std::thread::sleep(LOCK_PAUSE);
         }
-        Ok(None)
-    }
-
-    fn is_held(&self) -> Error {
-        Error::Disk {
+        Err(Error::Disk {
             path: self.root.clone(),
             problem: "another billow command is running this study\n  next: wait until it has \
                       ended, or choose another folder with --results DIR"
                 .to_owned(),
-        }
+        })
     }
 
     /// Checks that a held lock is still that of this folder, so that nothing is written into a folder that
@@ -117,14 +63,13 @@ impl Results<'_> {
         })
     }
 
-    /// Whether another process is running this study, alone or together with others.
+    /// Whether another process is running this study.
     ///
     /// # Errors
     /// [`Error::Disk`].
     pub fn is_running(&self) -> Result<bool> {
         let path = self.lock_path();
-        let alone = self.files.is_locked(&path).map_err(|error| disk_error(&path, &error))?;
-        Ok(alone || !self.live_runs()?.is_empty())
+        self.files.is_locked(&path).map_err(|error| disk_error(&path, &error))
     }
 
     /// Refuses a folder without study.json that holds files no run wrote.

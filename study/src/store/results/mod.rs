@@ -9,9 +9,9 @@
 //!                 summary.parquet   the table, built from plan and journal (crate::store::table)
 //!                 index.json        what commands need without planning again (crate::store::index)
 //!                 charts/           pictures (crate::chart)
-//!                 claims/           during runs that share the folder: which of them has which job (crate::store::claims)
 //!                 attempts.jsonl    during a run: which jobs it has started (crate::store::attempts)
-//!                 submissions/      what was given to a scheduler (`crate::cluster`)
+//!                 submission/       what was given to a scheduler (`crate::cluster`)
+//!                 parts/            results of the tasks of a scheduler, folders of results
 //!                 damaged/          files that were damaged, as they were found (crate::store::damaged)
 //!                 lock              held while a command changes the folder
 //! ```
@@ -20,13 +20,14 @@
 //! stays: jobs that ended and are still planned are kept, other files stay unused, and the table
 //! follows the plan.
 
+use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{self, Files, disk_error};
-use crate::store::journal::{self, Journal};
+use crate::store::journal::{self, Journal, Record};
 use crate::store::table::{Table, parquet};
 
 mod histories;
@@ -37,7 +38,9 @@ mod study_json;
 /// Name of the file of a run's attempts.
 const ATTEMPTS: &str = "attempts.jsonl";
 /// Name of the folder of what was given to a scheduler.
-const SUBMISSIONS: &str = "submissions";
+pub const SUBMISSION: &str = "submission";
+/// Name of the folder with the results of the tasks of a scheduler.
+pub const PARTS: &str = "parts";
 /// Names that a run writes into a results folder.
 pub const RESULT_NAMES: [&str; 12] = [
     "study.json",
@@ -48,8 +51,8 @@ pub const RESULT_NAMES: [&str; 12] = [
     "summary.parquet",
     "charts",
     ATTEMPTS,
-    "claims",
-    SUBMISSIONS,
+    SUBMISSION,
+    PARTS,
     "damaged",
     "lock",
 ];
@@ -122,8 +125,36 @@ impl<'a> Results<'a> {
     }
 
     /// Path of what was given to a scheduler.
-    pub fn submissions_path(&self) -> PathBuf {
-        self.root.join(SUBMISSIONS)
+    pub fn submission_path(&self) -> PathBuf {
+        self.root.join(SUBMISSION)
+    }
+
+    /// The results of the tasks of a scheduler, as far as they began.
+    ///
+    /// # Errors
+    /// [`Error::Disk`].
+    pub fn parts(&self) -> Result<Vec<Self>> {
+        let folder = self.root.join(PARTS);
+        let paths = self.files.list(&folder).map_err(|error| disk_error(&folder, &error))?;
+        let begun = paths.iter().filter(|path| path.join("study.json").exists());
+        Ok(begun.map(|path| Self::new(self.files, path)).collect())
+    }
+
+    /// The records of the results of which these are a part; none for a folder outside `parts`.
+    ///
+    /// # Errors
+    /// [`Error::Disk`].
+    pub fn known(&self) -> Result<BTreeMap<JobId, Record>> {
+        match self.whole() {
+            Some(whole) if whole.owner()?.is_some() => Ok(whole.journal()?.records),
+            _ => Ok(BTreeMap::new()),
+        }
+    }
+
+    /// The results of which these are a part; `None` for a folder outside `parts`.
+    pub fn whole(&self) -> Option<Self> {
+        let parts = self.root.parent().filter(|parts| parts.ends_with(PARTS))?;
+        Some(Self::new(self.files, parts.parent()?))
     }
 
     /// Path of the folder of damaged files.

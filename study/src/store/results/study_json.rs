@@ -19,7 +19,7 @@ use crate::study::{JOB_LIMITS, Study, UNITS};
 
 /// Name of the format.
 const FORMAT: &str = "billow-study";
-/// Version of study.json that this program writes, and the newest that it reads.
+/// Version of study.json.
 const VERSION: u64 = 1;
 
 /// The members that say which study it is.
@@ -123,9 +123,9 @@ impl Results<'_> {
         if owner.format != FORMAT {
             return Err(self.refused(&format!("format {:?} is not {FORMAT:?}", owner.format)));
         }
-        if owner.version > VERSION {
+        if owner.version != VERSION {
             return Err(self.refused(&format!(
-                "version {}, this program reads up to {VERSION}: a newer billow wrote it",
+                "version {}, this program reads version {VERSION}: another billow wrote it",
                 owner.version
             )));
         }
@@ -164,25 +164,6 @@ impl Results<'_> {
         let text = study_text(name, study).map_err(|error| disk_error(&path, &error))?;
         self.write_study_text(&text)?;
         Ok(text)
-    }
-
-    /// Writes study.json as [`Self::write_study`] does, for a run that shares the folder: a folder that holds another version
-    /// of the study is refused, since other runs may be working on it.
-    ///
-    /// # Errors
-    /// As [`Self::write_study`].
-    pub fn write_shared_study(
-        &self,
-        name: &str,
-        study: &Json,
-        journal: &Journal,
-    ) -> Result<String> {
-        if self.owner()?.is_some_and(|owner| owner == name) && !self.holds(name, study)? {
-            return Err(self.refused(
-                "the folder holds another version of this study, and other runs may be working on it",
-            ));
-        }
-        self.write_study(name, study, journal)
     }
 
     /// Writes study.json again as the journal has it, if it is damaged or missing and the journal has it. The

@@ -1,13 +1,12 @@
 //! Hands jobs to the workers and stores what comes back.
 
-use std::collections::BTreeSet;
 use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::time::Duration;
 
 use super::State;
-use crate::job::{Job, JobId};
+use crate::job::Job;
 use crate::platform::error::{Error, Result};
 use crate::platform::memory::limits;
 use crate::run::event::{Event, Reporter};
@@ -18,8 +17,6 @@ use crate::store::journal::Record;
 
 /// Time without a check of the stop request, at most.
 const MAX_WAIT: Duration = Duration::from_millis(100);
-/// Time between two looks at jobs that other runs have. Chosen: a signal still ends the run within 2 s.
-const HELD_WAIT: Duration = Duration::from_millis(500);
 /// Jobs stored with one sync of the journal, at most. Chosen: a sync takes longer than a small job.
 const MAX_JOBS_PER_SYNC: usize = 64;
 /// Messages that wait for the storing thread, at most, per worker. When the disk is slow, results then
@@ -47,45 +44,12 @@ impl State<'_, '_> {
         Ok(())
     }
 
-    /// Runs jobs and stores them as they end: suspects last, each with no other job beside it. Where other runs share the
-    /// folder, then the jobs that dead ones left.
+    /// Runs jobs and stores them as they end: suspects last, each with no other job beside it.
     pub(in crate::run::runner) fn run_jobs(
         &mut self,
         jobs: Vec<Job>,
         reporter: &mut dyn Reporter,
     ) -> Result<()> {
-        let all = if self.log.is_shared() { jobs.clone() } else { Vec::new() };
-        self.run_once(jobs, reporter)?;
-        while let Some(free) = self.wait_for_free_jobs()? {
-            let left = all.iter().filter(|job| free.contains(&job.id)).cloned().collect();
-            self.run_once(left, reporter)?;
-        }
-        let elsewhere = self.log.ended_elsewhere()?;
-        let others = elsewhere.into_iter().filter(|(id, _)| !self.records.contains_key(id));
-        let others: Vec<_> = others.collect();
-        self.summary.ended_elsewhere += others.len();
-        self.records.extend(others);
-        Ok(())
-    }
-
-    /// Jobs that no run has any more; `None` when every job has ended or is that of a live run, or at a signal.
-    fn wait_for_free_jobs(&self) -> Result<Option<BTreeSet<JobId>>> {
-        while self.run.stop.requested().is_none() {
-            let (free, waits) = self.log.free_jobs()?;
-            if !free.is_empty() {
-                return Ok(Some(free));
-            }
-            if !waits {
-                break;
-            }
-            self.log.renew()?;
-            std::thread::sleep(HELD_WAIT);
-        }
-        Ok(None)
-    }
-
-    /// Runs jobs and stores them as they end: suspects last, each with no other job beside it.
-    fn run_once(&mut self, jobs: Vec<Job>, reporter: &mut dyn Reporter) -> Result<()> {
         let (suspects, others): (Vec<Job>, Vec<Job>) =
             jobs.into_iter().partition(|job| self.deaths.is_suspect(&job.id));
         if !others.is_empty() {
@@ -133,8 +97,6 @@ impl State<'_, '_> {
             let watch = scope.spawn(|| {
                 while !over.load(Ordering::Relaxed) && stop.requested().is_none() {
                     std::thread::park_timeout(MAX_WAIT);
-                    // A claim that cannot be renewed is over after a while: another run then has the same bits.
-                    let _ = log.renew();
                 }
                 if stop.requested().is_some() {
                     log.stop();
