@@ -27,7 +27,7 @@ enum Command {
     /// Map where each method of integration fails, by real runs of small scenes.
     Stability(stability::command::Args),
     /// Measure the speed of billow on this machine, stage by stage, against its targets.
-    Bench(bench::command::Args),
+    Bench(bench::Args),
     /// Draw work-precision diagrams of scenes with an exact answer.
     Pareto(exact::Args),
     /// Show to what each measure of a study tends as the mesh is refined.
@@ -50,7 +50,7 @@ fn run(out: &mut dyn Write) -> Result<()> {
         Ok(cli) => match &cli.command {
             Command::Validate(args) => cases::command::run(args, out),
             Command::Stability(args) => stability::command::run(args, out),
-            Command::Bench(args) => bench::command::run(args, out),
+            Command::Bench(args) => bench::run(args, out),
             Command::Pareto(args) => exact::run(args, out),
             Command::Converge(args) => convergence::command::run(args, out),
         },

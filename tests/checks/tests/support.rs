@@ -1,7 +1,7 @@
 //! Runs the programs in a temporary folder.
 
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Command, Output, Stdio};
 
 /// A temporary folder in which `billow-checks` runs.
 pub struct Folder {
@@ -60,12 +60,4 @@ pub fn checks(arguments: &[&str]) -> Command {
 /// The stderr of a command.
 pub fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-/// Sends a signal to a process.
-pub fn signal(child: &Child, name: &str) {
-    // The shell's builtin: a minimal system has no kill program.
-    let kill = format!("kill {name} {}", child.id());
-    let sent = Command::new("sh").args(["-c", &kill]).status().unwrap();
-    assert!(sent.success());
 }

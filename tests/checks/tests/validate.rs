@@ -1,16 +1,14 @@
 //! `billow validate`: rows, names, tiers, exit codes.
 
-use std::io::{BufRead, BufReader, Read};
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
 
-use billow_checks::cases::command as validate;
-use billow_checks::cases::{self, CASES, Rig, Tier};
+use billow_checks::cases::{CASES, Rig, Tier, command};
 use billow_solver::platform::fault_injection::{Fault, Term};
 use billow_study::cli::Format;
 use billow_study::platform::exit_code::Exit;
 use serde_json::Value;
 
-use crate::support::signal;
+use crate::support::{checks, stderr as stderr_of};
 
 const KEYS: [&str; 10] = [
     "case",
@@ -25,17 +23,12 @@ const KEYS: [&str; 10] = [
     "note",
 ];
 
-fn billow(flags: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_billow-checks"));
-    command.arg("validate").args(flags).output().expect("the binary runs")
+fn validate(flags: &[&str]) -> Output {
+    checks(&[&["validate"], flags].concat()).output().expect("the binary runs")
 }
 
 fn rows(output: &Output) -> Vec<Value> {
     serde_json::from_slice(&output.stdout).expect("a JSON array of rows")
-}
-
-fn stderr_of(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 /// `make test` runs the whole quick tier, `make test-all` every case.
@@ -43,7 +36,7 @@ fn stderr_of(output: &Output) -> String {
 fn rows_are_in_table_order_and_quick_skips_long_cases() {
     let names = ["free_flight_damping", "released_sphere", "tank_filling", "injected_piston"];
     let flags: Vec<&str> = names.iter().flat_map(|name| ["--case", name]).collect();
-    let output = billow(&[&flags[..], &["--quick", "--json", "--threads", "2"]].concat());
+    let output = validate(&[&flags[..], &["--quick", "--json", "--threads", "2"]].concat());
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert_eq!(output.status.code(), Some(0), "{text}\n{}", stderr_of(&output));
     let rows = rows(&output);
@@ -69,7 +62,7 @@ fn rows_are_in_table_order_and_quick_skips_long_cases() {
 fn cases_are_selected_by_name() {
     // In table order, and once, in whatever order they are named.
     let flags = ["--case", "shear_panel", "--case", "patch", "--case", "patch", "--json", "-q"];
-    let output = billow(&flags);
+    let output = validate(&flags);
     assert!(output.status.success(), "{}", stderr_of(&output));
     assert!(output.stderr.is_empty());
     let rows = rows(&output);
@@ -80,31 +73,31 @@ fn cases_are_selected_by_name() {
     assert_eq!(panel["tolerance"], 1e-3);
     assert!(panel["order"].is_null());
 
-    let table = billow(&["--case", "patch"]);
+    let table = validate(&["--case", "patch"]);
     let text = String::from_utf8_lossy(&table.stdout).into_owned();
     assert!(text.starts_with("case ") && text.contains("billow") && text.contains("yes"), "{text}");
     let said = stderr_of(&table);
     assert!(said.starts_with("billow-checks: 1 case, about 1 s with "), "{said}");
     assert!(said.contains("1/1 patch: in tolerance"), "{said}");
-    let csv = billow(&["--case", "patch", "--format", "csv", "-q"]);
+    let csv = validate(&["--case", "patch", "--format", "csv", "-q"]);
     assert!(String::from_utf8_lossy(&csv.stdout).starts_with(&KEYS.join(",")));
 }
 
 #[test]
 fn an_unknown_case_is_bad_input() {
-    let output = billow(&["--case", "shear_pannel"]);
+    let output = validate(&["--case", "shear_pannel"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(output.stdout.is_empty());
     let error = stderr_of(&output);
     assert!(error.contains("--case = shear_pannel: unknown name"), "{error}");
     assert!(error.contains("did you mean shear_panel?"), "{error}");
     assert!(CASES.iter().all(|case| error.contains(case.name)), "{error}");
-    assert_eq!(billow(&["--threads", "0"]).status.code(), Some(2));
+    assert_eq!(validate(&["--threads", "0"]).status.code(), Some(2));
 }
 
 #[test]
 fn list_runs_nothing() {
-    let output = billow(&["--list", "--json"]);
+    let output = validate(&["--list", "--json"]);
     let rows = rows(&output);
     assert_eq!(rows.len(), CASES.len());
     for (row, case) in rows.iter().zip(CASES) {
@@ -122,45 +115,12 @@ fn a_case_out_of_tolerance_gives_exit_code_1() {
     let judged =
         [case.run(&Rig { fault: Some(fault), ..Rig::default() }), case.run(&Rig::default())];
     let mut out = Vec::new();
-    validate::print(&judged, Format::Json, &mut out).expect("a Vec accepts all bytes");
+    command::print(&judged, Format::Json, &mut out).expect("a Vec accepts all bytes");
     let rows: Vec<Value> = serde_json::from_slice(&out).expect("JSON");
     assert_eq!((&rows[0]["pass"], &rows[1]["pass"]), (&Value::Bool(false), &Value::Bool(true)));
     assert!(rows[0]["error"].as_f64() > Some(5e-3));
-    let error = validate::verdict(&judged).expect_err("one is out of tolerance");
+    let error = command::verdict(&judged).expect_err("one is out of tolerance");
     assert_eq!(error.to_string(), "1 of 2 cases out of tolerance: shear_panel");
     assert_eq!(error.exit(), Exit::Failure);
-    assert!(validate::verdict(&judged[1..]).is_ok());
-}
-
-#[test]
-fn rows_are_the_same_with_one_thread_and_two() {
-    let few: Vec<&cases::Case> = CASES.iter().filter(|case| case.name.contains("piston")).collect();
-    let run = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        let judged = cases::run_all(&pool, &few, &Rig::default(), &|_| ());
-        judged.into_iter().map(|case| (case.name, case.rows)).collect::<Vec<_>>()
-    };
-    assert_eq!(run(1), run(2));
-}
-
-#[test]
-fn a_signal_keeps_the_finished_rows() {
-    // The second case takes many times as long as the first.
-    let flags =
-        ["validate", "--case", "patch", "--case", "deployed_equals_inflated_fine", "--json"];
-    let mut command = Command::new(env!("CARGO_BIN_EXE_billow-checks"));
-    let child = command.args(flags).args(["--threads", "1"]);
-    let child = child.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
-    let mut child = child.expect("the binary runs");
-    let mut stderr = BufReader::new(child.stderr.take().expect("piped"));
-    let mut error = String::new();
-    stderr.read_line(&mut error).expect("the estimate");
-    stderr.read_line(&mut error).expect("a line");
-    assert!(error.contains("billow-checks: 1/2 patch: in tolerance"), "{error}");
-    signal(&child, "-INT");
-    stderr.read_to_string(&mut error).expect("the remaining output");
-    let output = child.wait_with_output().expect("a child");
-    assert_eq!(output.status.code(), Some(130), "{error}");
-    assert!(error.contains("stopped by signal 2; 1 of 2 cases finished"), "{error}");
-    assert!(rows(&output).iter().all(|row| row["case"] == "patch"));
+    assert!(command::verdict(&judged[1..]).is_ok());
 }

@@ -1,40 +1,38 @@
 //! The capsule of the bench: the paper's capsule from `scenes/capsule.json`, for up to 1.5 s.
 //!
-//! It runs from the stowed shape as in `billow solve`. At each mark the bench keeps the state, from
-//! which stages are timed, or the cost so far.
+//! It runs from the stowed shape as in `billow solve`. On its way the bench keeps states, from which stages are timed,
+//! and the cost so far.
 
 use std::path::Path;
-use std::time::Instant;
 
+use billow_solver::models;
 use billow_solver::models::film::FilmRun;
-use billow_solver::models::run::{Model, Observer, Progress, Run};
-use billow_solver::output::outcome::Stop as End;
-use billow_solver::platform::simd;
+use billow_solver::models::run::{Model, Observer, Run};
+use billow_solver::output::outcome::Stop;
+use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::timeline::Timeline;
-
-use super::{Line, interrupted, machine};
-use billow_study::input::value::Value;
 use billow_study::platform::error::{Error, Result};
 use billow_study::platform::memory;
-use billow_study::platform::stop::Stop;
 use billow_study::scene::file::SceneFile;
 
+use super::machine::{Watch, core_share};
+use super::{EARLY, Effort, LARGEST_RUN, MAX_REPEATED_WALL_TIME, Part, Plan, Row, stages};
+
+/// Time of the state `rising`, s.
+pub(super) const RISING: f64 = 0.03;
 /// The shipped scene.
 const SCENE: &str = include_str!("../../../../scenes/capsule.json");
-/// Its name in error messages.
-const NAME: &str = "scenes/capsule.json";
 /// End time of the scene: later than every timed run, so that inflow lasts through the 1.5 s case.
 const END_TIME: &str = "solver.end_time=\"1.6 s\"";
 
 /// The capsule of one mesh.
 #[derive(Debug, Clone)]
-pub struct Capsule {
+pub(super) struct Capsule {
     /// Elements along each edge of the pattern, n.
-    pub subdivisions: u32,
-    /// The scene.
-    pub scene: SceneFile,
+    pub(super) subdivisions: u32,
+    scene: SceneFile,
     /// Its timeline.
-    pub timeline: Timeline,
+    pub(super) timeline: Timeline,
 }
 
 impl Capsule {
@@ -42,16 +40,17 @@ impl Capsule {
     ///
     /// # Errors
     /// If the scene is invalid on this mesh.
-    pub fn new(subdivisions: u32, instruction_set: simd::InstructionSet) -> Result<Self> {
+    pub(super) fn new(subdivisions: u32, instruction_set: InstructionSet) -> Result<Self> {
         let sets = [END_TIME.to_owned(), format!("design.subdivisions={subdivisions}")];
-        let scene = SceneFile::from_text(SCENE, Path::new(NAME), &sets, instruction_set)?;
+        let scene =
+            SceneFile::from_text(SCENE, Path::new("scenes/capsule.json"), &sets, instruction_set)?;
         let timeline = Timeline::of_film(&scene.film);
         Ok(Self { subdivisions, scene, timeline })
     }
 
     /// The same without contact and without the tunnelling monitor: film passes through film.
     #[must_use]
-    pub fn without_contact(mut self) -> Self {
+    pub(super) fn without_contact(mut self) -> Self {
         self.scene.film.contact = None;
         self
     }
@@ -60,150 +59,155 @@ impl Capsule {
     ///
     /// # Errors
     /// If the film is invalid.
-    pub fn stowed(&self) -> Result<FilmRun> {
+    fn stowed(&self) -> Result<FilmRun> {
         let failed = |error| Error::JobsFailed(format!("n {}: {error}", self.subdivisions));
         FilmRun::of(&self.scene.film, self.scene.rings.clone()).map_err(failed)
     }
 }
 
-/// A time at which a run is interrupted.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Mark {
-    /// Simulated time of a sample, s.
-    pub time: f64,
-    /// Name of the state, if stages are timed from it.
-    pub state: Option<&'static str>,
-    /// Whether the cost so far becomes a case.
-    pub case: bool,
-}
-
-/// A state of a run, from which stages are timed.
-#[derive(Debug, Clone)]
-pub struct State {
-    /// Its name.
-    pub name: &'static str,
-    /// Simulated time, s.
-    pub time: f64,
+/// A capsule on its way, with the cost so far.
+#[derive(Clone)]
+pub(super) struct Progress<'a> {
+    capsule: &'a Capsule,
     /// The film.
-    pub run: FilmRun,
+    pub(super) film: FilmRun,
+    run: Run,
+    wall: f64,
+    on_core: Option<f64>,
 }
 
-/// Cost of a run from the start to a time.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Case {
-    /// Elements along each edge of the pattern, n.
-    pub subdivisions: u32,
-    /// Simulated time, s.
-    pub end_time: f64,
-    /// Number of elements.
-    pub elements: usize,
-    /// Number of steps.
-    pub steps: u64,
-    /// Wall time with samples, s.
-    pub wall_seconds: f64,
-    /// Time on a processor core, s, without other processes. `None` if the system does not report it.
-    pub core_seconds: Option<f64>,
-    /// Residual of the energy ledger: a fast run must also be a sound one.
-    pub ledger_residual: f64,
-    /// Passages of film through film.
-    pub passages: Option<u64>,
-    /// Peak memory of the process so far, bytes.
-    pub peak_memory: Option<u64>,
+/// Ends a run at a sample.
+struct Until(f64);
+
+impl Observer for Until {
+    fn sample(&mut self, progress: models::run::Progress) -> bool {
+        progress.time < self.0
+    }
 }
 
-impl Case {
-    /// Wall time per element and step, ns.
-    pub fn nanoseconds(&self) -> f64 {
-        1e9 * self.wall_seconds / (self.steps as f64 * self.elements as f64)
+impl<'a> Progress<'a> {
+    /// At time 0.
+    ///
+    /// # Errors
+    /// If the film is invalid.
+    pub(super) fn of(capsule: &'a Capsule) -> Result<Self> {
+        let (film, run) = (capsule.stowed()?, Run::default());
+        Ok(Self { capsule, film, run, wall: 0.0, on_core: Some(0.0) })
     }
 
-    /// Fraction of the wall time on a core; `None` if unknown, or if the run is too short.
-    pub fn core_share(&self) -> Option<f64> {
-        machine::core_share(self.core_seconds, self.wall_seconds)
+    /// Runs to a time of a sample, s.
+    ///
+    /// # Errors
+    /// A failure of the run.
+    pub(super) fn run_to(&mut self, time: f64) -> Result<()> {
+        // Samples are multiples of the interval; half an interval less avoids rounding errors.
+        let timeline = &self.capsule.timeline;
+        let until = &mut Until(time - 0.5 * timeline.sample_interval);
+        let watch = Watch::start();
+        let end = self.run.advance(&mut self.film, timeline, u64::MAX, until);
+        let (wall, on_core) = watch.seconds();
+        self.wall += wall;
+        self.on_core = self.on_core.zip(on_core).map(|(before, more)| before + more);
+        match end {
+            Some(Stop::Failed(failure)) => Err(Error::JobsFailed(format!(
+                "n {}: {} at {} s: {}",
+                self.capsule.subdivisions,
+                failure.kind.name(),
+                failure.time,
+                failure.place
+            ))),
+            _ => Ok(()),
+        }
     }
 
-    /// As a row of the report.
-    pub fn line(&self) -> Line {
-        let count = |number: u64| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));
-        let maybe = |number: Option<u64>| number.map_or(Value::Null, count);
+    /// The cost from the start to this time, s. The audit is part of it: a fast run must also be a sound one.
+    fn case(&self, time: f64) -> Row {
+        let timeline = &self.capsule.timeline;
+        let audit = self.run.clone().finish(&self.film, timeline, Stop::Cancelled).audit;
+        let (elements, steps) = (self.film.elements(), self.film.steps());
+        let cost = 1e9 * self.wall / (steps as f64 * elements as f64);
         vec![
-            ("subdivisions", Value::Integer(self.subdivisions.into())),
-            ("end_time", Value::Number(self.end_time)),
-            ("elements", count(self.elements as u64)),
-            ("steps", count(self.steps)),
-            ("wall_seconds", Value::Number(self.wall_seconds)),
-            ("core_seconds", self.core_seconds.map_or(Value::Null, Value::Number)),
-            ("wall_per_second", Value::Number(self.wall_seconds / self.end_time)),
-            ("ns_per_element_step", Value::Number(self.nanoseconds())),
-            ("ledger_residual", Value::Number(self.ledger_residual)),
-            ("passages", maybe(self.passages)),
-            ("peak_memory", maybe(self.peak_memory)),
+            ("subdivisions", self.capsule.subdivisions.into()),
+            ("end_time", time.into()),
+            ("elements", elements.into()),
+            ("steps", steps.into()),
+            ("wall_seconds", self.wall.into()),
+            ("core_seconds", self.on_core.into()),
+            ("core_share", core_share((self.wall, self.on_core)).into()),
+            ("wall_per_second", (self.wall / time).into()),
+            ("ns_per_element_step", cost.into()),
+            ("ledger_residual", audit.ledger_residual.into()),
+            ("passages", audit.passages.into()),
+            ("peak_memory", memory::peak_resident().into()),
         ]
     }
 }
 
-/// Ends a run at a sample, or on a signal.
-struct Until<'a> {
-    time: f64,
-    stop: &'a Stop,
-}
-
-impl Observer for Until<'_> {
-    fn sample(&mut self, progress: Progress) -> bool {
-        progress.time < self.time && self.stop.requested().is_none()
+/// End time of a mesh's run, s. Chosen: the run takes minutes at most.
+fn end_time(effort: Effort, subdivisions: u32) -> f64 {
+    match (effort, subdivisions) {
+        (Effort::Quick, n) if n > LARGEST_RUN => 0.0,
+        (Effort::Quick, _) => 0.05,
+        (_, n) if n > LARGEST_RUN => EARLY,
+        (Effort::Usual, 0..=8) | (Effort::Full, 9..) => 0.3,
+        (Effort::Usual, _) => 0.1,
+        (Effort::Full, _) => 1.5,
     }
 }
 
-/// Runs a capsule to its last mark; marks are in ascending order.
+/// Runs one mesh: its cost to each end time of a case, and the stages from its states.
 ///
 /// # Errors
-/// A failure of the run; a signal.
-pub fn run_to_marks(
-    capsule: &Capsule,
-    marks: &[Mark],
-    stop: &Stop,
-) -> Result<(Vec<State>, Vec<Case>)> {
-    let (mut model, mut run) = (capsule.stowed()?, Run::default());
-    let (mut states, mut cases) = (Vec::new(), Vec::new());
-    let (mut wall_seconds, mut core_seconds) = (0.0, Some(0.0));
-    for mark in marks {
-        if mark.time > 0.0 {
-            // Samples are multiples of the interval; half an interval less avoids rounding errors.
-            let time = mark.time - 0.5 * capsule.timeline.sample_interval;
-            let (start, core) = (Instant::now(), machine::core_seconds());
-            let end =
-                run.advance(&mut model, &capsule.timeline, u64::MAX, &mut Until { time, stop });
-            wall_seconds += start.elapsed().as_secs_f64();
-            let on_core = machine::core_seconds().zip(core).map(|(now, then)| now - then);
-            core_seconds = core_seconds.zip(on_core).map(|(before, more)| before + more);
-            interrupted(stop)?;
-            if let Some(End::Failed(failure)) = end {
-                return Err(Error::JobsFailed(format!(
-                    "n {}: {} at {} s: {}",
-                    capsule.subdivisions,
-                    failure.kind.name(),
-                    failure.time,
-                    failure.place
-                )));
-            }
+/// A failure of the run.
+pub(super) fn measure(
+    subdivisions: u32,
+    plan: &Plan<'_>,
+    stages: &mut Vec<Row>,
+    cases: &mut Vec<Row>,
+) -> Result<()> {
+    let capsule = Capsule::new(subdivisions, plan.instruction_set)?;
+    let end = end_time(plan.effort, subdivisions);
+    if end > 0.0 {
+        plan.note(&format!("run, n {subdivisions}, {end} s"));
+    }
+    let mut progress = Progress::of(&capsule)?;
+    let mut states = vec![("stowed", progress.film.clone())];
+    let full = subdivisions <= LARGEST_RUN;
+    for time in [EARLY, RISING, 0.05, 0.1, 0.3, 1.5].into_iter().filter(|time| *time <= end) {
+        progress.run_to(time)?;
+        if time == RISING {
+            states.push(("rising", progress.film.clone()));
         }
-        if let Some(name) = mark.state {
-            states.push(State { name, time: mark.time, run: model.clone() });
+        let is_end = time == end;
+        let is_case = time != RISING && time != 0.05 && plan.effort != Effort::Quick;
+        if plan.has(Part::Cases) && (is_end || is_case) {
+            cases.push(fastest(&capsule, &progress, time, plan)?);
         }
-        if mark.case {
-            let audit = run.clone().finish(&model, &capsule.timeline, End::Cancelled).audit;
-            cases.push(Case {
-                subdivisions: capsule.subdivisions,
-                end_time: mark.time,
-                elements: model.elements(),
-                steps: model.steps(),
-                wall_seconds,
-                core_seconds,
-                ledger_residual: audit.ledger_residual,
-                passages: audit.passages,
-                peak_memory: memory::peak_resident(),
-            });
+        if is_end && full {
+            states.push(("end", progress.film.clone()));
         }
     }
-    Ok((states, cases))
+    if plan.has(Part::Stages) {
+        for (name, film) in states {
+            plan.note(&format!("stages, n {subdivisions}, {name}"));
+            stages.push(stages::measure(&capsule, name, &film, plan)?);
+        }
+    }
+    Ok(())
+}
+
+/// The cost to a time; a short run, which other processes disturb most, is repeated and the fastest kept.
+fn fastest(capsule: &Capsule, run: &Progress<'_>, time: f64, plan: &Plan<'_>) -> Result<Row> {
+    let (mut row, mut wall) = (run.case(time), run.wall);
+    for _ in 1..plan.repeats() {
+        if wall > MAX_REPEATED_WALL_TIME {
+            break;
+        }
+        let mut repeat = Progress::of(capsule)?;
+        repeat.run_to(time)?;
+        if repeat.wall < wall {
+            (row, wall) = (repeat.case(time), repeat.wall);
+        }
+    }
+    Ok(row)
 }

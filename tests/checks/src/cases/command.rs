@@ -1,38 +1,29 @@
 //! `billow-checks validate`: runs the reference cases and compares their errors with their tolerances.
 
 use std::io::Write;
-use std::path::Path;
-use std::sync::mpsc::{self, RecvTimeoutError};
-use std::thread;
-use std::time::Duration;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rayon::ThreadPool;
-
-use super::{CASES, Case, Judged, Rig, Tier, costs, run_all};
-use crate::output::chosen;
 use billow_study::cli::options::{OutputOptions, QuietOption, ThreadsOption};
 use billow_study::cli::print::{count, duration, print_rows};
 use billow_study::cli::{Format, instruction_set};
 use billow_study::input::value::Value;
 use billow_study::platform::error::{Error, Result};
-use billow_study::platform::files::disk_error;
-use billow_study::platform::stop::Stop;
 
-/// Interval at which a signal is checked for. Chosen: short for a user, long for a processor.
-const SIGNAL_INTERVAL: Duration = Duration::from_millis(50);
+use super::{CASES, Case, Judged, Rig, Tier, run_all};
+use crate::output::chosen;
 
 /// Arguments of `billow-checks validate`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Run only this case; can be repeated.
     #[arg(long = "case", value_name = "NAME")]
-    pub cases: Vec<String>,
+    cases: Vec<String>,
     /// Skip the long cases. The first line on stderr estimates the time.
     #[arg(long)]
-    pub quick: bool,
+    quick: bool,
     /// List the cases, about how long each takes and what it compares; run nothing.
     #[arg(long)]
-    pub list: bool,
+    list: bool,
     #[command(flatten)]
     threads: ThreadsOption,
     #[command(flatten)]
@@ -44,91 +35,38 @@ pub struct Args {
 /// Runs `billow-checks validate`.
 ///
 /// # Errors
-/// An unknown case; a case that is out of tolerance; a signal, after the rows of the finished cases.
+/// An unknown case; a case that is out of tolerance.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let chosen = chosen("--case", &args.cases, CASES, |case| case.name)?;
     if args.list {
         return list(&chosen, args.output.format(), out);
     }
+    let note = |text: String| {
+        if !args.quiet.quiet {
+            eprintln!("billow-checks: {text}");
+        }
+    };
     let skip = |case: &&Case| args.quick && case.tier == Tier::Long;
     let (skipped, cases): (Vec<&Case>, Vec<&Case>) = chosen.into_iter().partition(skip);
-    if cases.is_empty() {
-        let problem = "skips every case that --case names";
-        return Err(Error::invalid_option(
-            "--quick",
-            "",
-            problem,
-            "long cases without --quick",
-            "",
-        ));
-    }
     let rig = Rig { instruction_set: instruction_set::selected()?, ..Rig::default() };
-    let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
-    let total = cases.len();
     let pool = args.threads.pool()?;
-    if !args.quiet.quiet {
-        let threads = pool.current_num_threads();
-        eprintln!(
-            "billow-checks: {}, about {} with {} on an idle machine",
-            count(total, "case"),
-            duration(costs::total_seconds(&cases, threads).ceil()),
-            count(threads, "thread")
-        );
-    }
-    let mut judged = judge(pool, cases.clone(), rig, &stop, &|number, judged| {
-        if !args.quiet.quiet {
-            let verdict = if judged.pass() { "in tolerance" } else { "OUT OF TOLERANCE" };
-            let Judged { name, seconds, .. } = judged;
-            eprintln!("billow-checks: {number}/{total} {name}: {verdict}, {seconds:.1} s");
-        }
-    });
-    let position = |judged: &Judged| cases.iter().position(|case| case.name == judged.name);
-    judged.sort_by_key(position);
-    if !skipped.is_empty() && !args.quiet.quiet {
+    let (total, threads) = (cases.len(), pool.current_num_threads());
+    let longest = cases.iter().map(|case| case.seconds).fold(0.0, f64::max);
+    let shared = cases.iter().map(|case| case.seconds).sum::<f64>() / threads as f64;
+    let (time, threads) = (duration(shared.max(longest).ceil()), count(threads, "thread"));
+    note(format!("{}, about {time} with {threads} on an idle machine", count(total, "case")));
+    if !skipped.is_empty() {
         let names: Vec<&str> = skipped.iter().map(|case| case.name).collect();
-        eprintln!("billow-checks: skipped by --quick: {}", names.join(", "));
+        note(format!("skipped by --quick: {}", names.join(", ")));
     }
-    print(&judged, args.output.format(), out)?;
-    match stop.requested().filter(|_| judged.len() < total) {
-        Some(signal) => {
-            let next = format!(
-                "{} of {total} cases finished, their rows are above; --case NAME runs one case",
-                judged.len()
-            );
-            Err(Error::Interrupted { signal, next })
-        }
-        None => verdict(&judged),
-    }
-}
-
-/// Runs cases and returns them as judged. Calls `report` with a running number for each case that ends.
-/// After a signal it returns the cases that have ended; the others end with the program, because a case
-/// cannot be interrupted.
-fn judge(
-    pool: ThreadPool,
-    cases: Vec<&'static Case>,
-    rig: Rig,
-    stop: &Stop,
-    report: &dyn Fn(usize, &Judged),
-) -> Vec<Judged> {
-    let (sender, ended) = mpsc::channel();
-    let _running = thread::spawn(move || {
-        // After a signal the receiver is gone and the send fails.
-        let send = |judged: &Judged| drop(sender.send(judged.clone()));
-        run_all(&pool, &cases, &rig, &send)
+    let ended = AtomicUsize::new(0);
+    let judged = run_all(&pool, &cases, &rig, &|judged| {
+        let number = ended.fetch_add(1, Ordering::Relaxed) + 1;
+        let verdict = if judged.pass() { "in tolerance" } else { "OUT OF TOLERANCE" };
+        note(format!("{number}/{total} {}: {verdict}, {:.1} s", judged.name, judged.seconds));
     });
-    let mut judged = Vec::new();
-    while stop.requested().is_none() {
-        match ended.recv_timeout(SIGNAL_INTERVAL) {
-            Ok(case) => {
-                report(judged.len() + 1, &case);
-                judged.push(case);
-            }
-            Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => break,
-        }
-    }
-    judged
+    print(&judged, args.output.format(), out)?;
+    verdict(&judged)
 }
 
 /// The error of the command.
@@ -136,28 +74,22 @@ fn judge(
 /// # Errors
 /// When a case is out of tolerance.
 pub fn verdict(judged: &[Judged]) -> Result<()> {
-    let outside: Vec<&str> = judged.iter().filter(|j| !j.pass()).map(|j| j.name).collect();
+    let outside = judged.iter().filter(|judged| !judged.pass());
+    let outside: Vec<&str> = outside.map(|judged| judged.name).collect();
     if outside.is_empty() {
         return Ok(());
     }
-    Err(Error::JobsFailed(format!(
-        "{} of {} cases out of tolerance: {}",
-        outside.len(),
-        judged.len(),
-        outside.join(", ")
-    )))
+    let (number, all) = (outside.len(), judged.len());
+    let names = outside.join(", ");
+    Err(Error::JobsFailed(format!("{number} of {all} cases out of tolerance: {names}")))
 }
 
 fn list(cases: &[&Case], format: Format, out: &mut dyn Write) -> Result<()> {
-    let text = |text: &str| Value::Text(text.to_owned());
-    let tier = |case: &Case| if case.tier == Tier::Quick { "quick" } else { "long" };
-    let rows: Vec<Vec<Value>> = cases
-        .iter()
-        .map(|case| {
-            let seconds = Value::Number(costs::seconds(case));
-            vec![text(case.name), text(tier(case)), seconds, text(case.compares)]
-        })
-        .collect();
+    let row = |case: &&Case| -> Vec<Value> {
+        let tier = if case.tier == Tier::Quick { "quick" } else { "long" };
+        vec![case.name.into(), tier.into(), case.seconds.into(), case.compares.into()]
+    };
+    let rows: Vec<Vec<Value>> = cases.iter().map(row).collect();
     print_rows(&["case", "tier", "seconds", "compares"], &rows, format, out)
 }
 
@@ -166,33 +98,25 @@ fn list(cases: &[&Case], format: Format, out: &mut dyn Write) -> Result<()> {
 /// # Errors
 /// When the output cannot be written.
 pub fn print(judged: &[Judged], format: Format, out: &mut dyn Write) -> Result<()> {
-    let rows: Vec<Vec<Value>> = judged
-        .iter()
-        .flat_map(|case| case.rows.iter().map(move |row| (case, row)))
-        .map(|(case, row)| {
-            let number = |value: f64| {
-                if value.is_finite() { Value::Number(value) } else { Value::Null }
-            };
-            let maybe = |value: Option<f64>| value.map_or(Value::Null, number);
-            vec![
-                Value::Text(case.name.to_owned()),
-                Value::Text(row.quantity.clone()),
-                number(row.value),
-                maybe(row.reference),
-                number(row.error),
-                maybe(row.order),
-                number(row.band),
-                if format == Format::Table {
-                    Value::Text(if row.pass { "yes" } else { "NO" }.to_owned())
-                } else {
-                    Value::Bool(row.pass)
-                },
-                number(case.seconds),
-                Value::Text(row.note.clone()),
-            ]
-        })
-        .collect();
-    let value = if format == Format::Table { "billow" } else { "value" };
+    let table = format == Format::Table;
+    let number = |value: f64| Value::from(Some(value).filter(|value| value.is_finite()));
+    let mut rows = Vec::new();
+    for (case, row) in judged.iter().flat_map(|case| case.rows.iter().map(move |row| (case, row))) {
+        let pass = if row.pass { "yes" } else { "NO" };
+        rows.push(vec![
+            case.name.into(),
+            row.quantity.as_str().into(),
+            number(row.value),
+            row.reference.map_or(Value::Null, number),
+            number(row.error),
+            row.order.map_or(Value::Null, number),
+            number(row.band),
+            if table { pass.into() } else { row.pass.into() },
+            number(case.seconds),
+            row.note.as_str().into(),
+        ]);
+    }
+    let value = if table { "billow" } else { "value" };
     let columns = [
         "case",
         "quantity",

@@ -18,7 +18,6 @@ use std::time::Instant;
 use rayon::ThreadPool;
 
 pub mod command;
-pub mod costs;
 pub mod reference;
 pub mod rig;
 mod row;
@@ -81,6 +80,8 @@ pub struct Case {
     pub name: &'static str,
     /// What it compares.
     pub compares: &'static str,
+    /// About how long it takes on one core, s.
+    pub seconds: f64,
     /// Whether `--quick` skips it.
     pub tier: Tier,
     /// The function that runs it.
