@@ -12,7 +12,7 @@ use billow_solver::scene::{Film, GasSupply, HeatTransfer};
 use billow_solver::system::{Evaluation, FilmState, FilmSystem, Workspace};
 use nalgebra::Vector3;
 
-use crate::film_rig::{INFLOW, explicit, free, stowed};
+use crate::film_rig::{INFLOW, free, stowed};
 use crate::rig::paper_scene;
 
 /// The paper's capsule at n 3 with gas, contact, friction and adhesion, 15 ms after its release.
@@ -183,52 +183,6 @@ fn looking_at_film_changes_nothing() {
     let again = system.evaluate(state, &displaced(state, 1e-5).0, state.time, &mut workspace);
     assert_eq!(first, again);
     assert_eq!(*state, before);
-}
-
-#[test]
-fn dissipative_forces_take_the_energy_they_report() {
-    for (name, film) in films() {
-        let (system, state) = (film.view().system, film.view().state);
-        let mut damped = system.clone();
-        damped.mass_damping = 20.0;
-        let mut forces = Field::zeros(system.model.nodes());
-        let taken = damped.dissipate(state, &state.velocities, 1e-7, &mut forces);
-        let power: f64 = forces.iter().zip(state.velocities.iter()).map(|(f, v)| f.dot(&v)).sum();
-        let sum = taken.viscosity + taken.friction + taken.mass_damping;
-        println!("{name}: {taken:?}");
-        assert!((power - sum).abs() < 1e-9 * sum.abs(), "{name}: {power} {sum}");
-        assert!(taken.mass_damping < 0.0 && taken.friction <= 0.0 && taken.viscosity <= 0.0);
-        let rubs = system.contact.as_ref().is_some_and(|contact| contact.friction > 0.0);
-        assert_eq!(taken.friction < 0.0, rubs, "{name}");
-        assert_eq!(taken.viscosity < 0.0, system.numerical_damping > 0.0, "{name}");
-    }
-}
-
-/// The numerical stress of a short step of central differences is the viscosity of the system.
-#[test]
-fn a_short_step_has_the_viscosity_of_the_system() {
-    let shell = icosphere(2, 0.5);
-    let stretch = |x: Vector3<f64>| x.component_mul(&Vector3::new(1.01, 1.02, 1.03));
-    let velocities = pseudo_random(shell.positions.len(), 8);
-    let film = Film { numerical_damping: 0.1, ..Film::PAPER_ELASTIC };
-    let scene = FilmScene { velocities, ..free_film(moved(shell, stretch), film) };
-    let mut film = capsule::start(&scene, &[]).unwrap();
-    let start = film.view().state.clone();
-    let step = 1e-9;
-    let mut expected = Field::zeros(start.positions.len());
-    film.view().system.dissipate(&start, &start.velocities, step, &mut expected);
-    film.advance(step, &free()).unwrap();
-    let (now, histories) = (film.view(), explicit(&film).histories);
-    let found = billow_solver::mechanics::forces::membrane::numerical_forces(
-        &now.system.model,
-        &now.state.positions,
-        &histories,
-    );
-    let size = expected.iter().map(|f| f.norm()).fold(0.0, f64::max);
-    assert!(size > 0.0);
-    for (found, expected) in found.iter().zip(expected.iter()) {
-        assert!((found - expected).norm() < 1e-4 * size, "{found} {expected}");
-    }
 }
 
 /// The safe share of a motion through film and floor leaves every pair a tenth of its distance, and is 1 where

@@ -146,11 +146,6 @@ pub fn solve(
     (entry(scene.solver.model).solve)(instruction_set, scene, observer)
 }
 
-/// Whether the model of a scene has checkpoints.
-pub fn has_checkpoints(scene: &Scene) -> bool {
-    entry(scene.solver.model).resume.is_some()
-}
-
 /// Continues a run from a checkpoint, with the bits of a run that was never stopped.
 ///
 /// # Errors

@@ -12,7 +12,6 @@
 //!
 //! The integrators are above this room, and know each other only through these types.
 
-mod dissipation;
 mod evaluation;
 mod film_state;
 mod film_system;
@@ -20,7 +19,6 @@ mod stiffness;
 
 mod workspace;
 
-pub use dissipation::Dissipation;
 pub use evaluation::Evaluation;
 pub use film_state::FilmState;
 pub(crate) use film_state::bind;

@@ -46,7 +46,6 @@ mod contact_step;
 mod kick;
 pub mod motion;
 mod quiescence;
-pub mod reference_step;
 mod stability;
 pub mod update;
 

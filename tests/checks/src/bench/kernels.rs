@@ -5,9 +5,6 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use billow_solver::integrators::FilmSimulation;
-use billow_solver::integrators::explicit::reference_step::{
-    FilmMotion, reference_step, vector_step,
-};
 use billow_solver::integrators::explicit::update::KickParameters;
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::platform::stopwatch::Untimed;
@@ -16,6 +13,7 @@ use billow_solver::system::FilmSystem;
 use billow_study::platform::error::Result;
 
 use super::capsule::{Capsule, Progress, RISING};
+use super::reference_step::{FilmMotion, reference_step, vector_step};
 use super::stages::take_steps;
 use super::{Effort, Plan, Row};
 use crate::cases::rig::explicit;

@@ -24,6 +24,7 @@ mod capsule;
 mod kernels;
 mod machine;
 mod quiet_filling;
+mod reference_step;
 mod stages;
 mod statics;
 mod targets;

@@ -21,7 +21,7 @@ const MAX_SUBSTEP: f64 = 1.0;
 
 /// Creep strain P of eight elements, each in its own axes ([`crate::mechanics::film_model::ElementBlock`]).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct CreepStrain(pub(crate) [Lanes; 3]);
+pub struct CreepStrain(pub [Lanes; 3]);
 
 impl CreepStrain {
     /// Creep strains of a film that has been at these positions (m) for so long that its creep is over, in

@@ -21,11 +21,11 @@ use crate::platform::simd::{Lanes, WIDTH};
 #[serde(deny_unknown_fields)]
 pub struct ElementHistory {
     /// Elastic strain Ê.
-    pub(crate) strain: [Lanes; 3],
+    pub strain: [Lanes; 3],
     /// Stress S, Pa.
-    pub(crate) stress: [Lanes; 3],
+    pub stress: [Lanes; 3],
     /// Numerical stress D, Pa.
-    pub(crate) numerical_stress: [Lanes; 3],
+    pub numerical_stress: [Lanes; 3],
 }
 
 impl ElementHistory {

@@ -91,13 +91,13 @@ pub fn assemble_conservative(
 }
 
 /// Factor from the sum of the normals (x1 − x0) × (x2 − x0) at a node to ∂V/∂x; V = Σ x0·(x1 × x2)/6.
-pub(crate) const NORMAL_TO_GRADIENT: f64 = 1.0 / 6.0;
+pub const NORMAL_TO_GRADIENT: f64 = 1.0 / 6.0;
 
 /// Forces on the nodes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NodeForces {
     /// Membrane force and 6 ∂V/∂x of each node.
-    pub(crate) sums: Vec<NodeSum>,
+    pub sums: Vec<NodeSum>,
     /// Contact force on each node, N.
     pub contact: Field,
     /// Force of further energy terms on each node, N; empty without them.

@@ -2,9 +2,9 @@ use nalgebra::Vector2;
 use proptest::prelude::*;
 
 use super::*;
-use crate::mechanics::forces::membrane::strain;
-use crate::mechanics::material::Regime;
-use crate::scene::Film;
+use billow_solver::mechanics::forces::membrane::strain;
+use billow_solver::mechanics::material::Regime;
+use billow_solver::scene::Film;
 
 /// A sheet of 7 × 5 cells less half of one: 48 nodes, 69 elements, one of them alone in its kite,
 /// the last block not full.

@@ -3,19 +3,19 @@
 //!
 //! The plain loops are the reference for tests and for measurements: the same data layout and the same
 //! operations in the same order, so the same bits, but without vector registers. The equations are
-//! those of [`crate::mechanics::forces::membrane`] and [`super::update`].
+//! those of [`billow_solver::mechanics::forces::membrane`] and [`billow_solver::integrators::explicit::update`].
 
 use nalgebra::Vector3;
 
-use super::update::{KickParameters, drift_nodes, kick_nodes};
-use crate::geometry::field::Field;
-use crate::mechanics::film_model::{ElementBlock, FilmModel};
-use crate::mechanics::forces::membrane::{
+use billow_solver::geometry::field::Field;
+use billow_solver::integrators::explicit::update::{KickParameters, drift_nodes, kick_nodes};
+use billow_solver::mechanics::film_model::{ElementBlock, FilmModel};
+use billow_solver::mechanics::forces::membrane::{
     CreepStep, CreepStrain, ElementHistory, MembraneSums, NORMAL_TO_GRADIENT, NodeForces,
     assemble_membrane,
 };
-use crate::mechanics::supports::FreeComponents;
-use crate::platform::simd::{InstructionSet, Lanes, NodeSum, WIDTH};
+use billow_solver::mechanics::supports::FreeComponents;
+use billow_solver::platform::simd::{InstructionSet, Lanes, NodeSum, WIDTH};
 
 /// Film in motion, without gas, moving supports, or contact.
 #[derive(Debug, Clone, PartialEq)]
