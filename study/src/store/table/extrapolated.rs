@@ -6,7 +6,7 @@
 //! outside the table, or without runs of such scenes on the two finest, of three meshes only:
 //! error = max(e₀, 3 |m − m'|)   e₀: e of the table's base scene
 //! ```
-//! [Record 39](../../../../docs/decisions/0039-mesh-errors.md) has the reasons for the factor.
+//! [Record 24](../../../../docs/decisions/0024-mesh-errors.md) has the reasons for the factor.
 //!
 //! The row of a run on the finest mesh has them, if the runs on the next mesh that are equal in all else are done and
 //! trusted; otherwise it has the value of the finest mesh with its own error.
