@@ -17,7 +17,7 @@ use billow_solver::scene::{Film, GasSupply};
 use nalgebra::{Matrix3, Vector3};
 
 use super::contact_rig::{monitored_contact, plate, run_recorded};
-use super::reference::{number, rows};
+use super::reference::{entry, number, rows};
 use super::rig::held;
 use super::{Outcome, Rig, Row};
 
@@ -69,8 +69,7 @@ fn slice(radius: f64, gap: f64) -> FilmScene {
 /// Force and area of the section at both gaps.
 pub fn tube_between_plates(rig: &Rig) -> Outcome {
     let radius = number("tube_between_plates/radius");
-    let [force_band, area_band] =
-        ["force_band", "area_band"].map(|key| number(&format!("tube_between_plates/{key}")));
+    let [force_band, area_band] = entry("tube_between_plates", ["force_band", "area_band"]);
     let mut judged = Vec::new();
     for row in rows("tube_between_plates") {
         let (gap, area, force) = (row[0], row[2], row[3]);

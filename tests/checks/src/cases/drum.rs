@@ -19,9 +19,9 @@ use billow_solver::scene::{Film, IntegratorKind};
 use nalgebra::Vector3;
 
 use super::oscillation::frequency;
-use super::reference::{number, rows};
+use super::reference::{entry, rows};
 use super::rig::held;
-use super::row::{order, richardson};
+use super::row::richardson;
 use super::{Outcome, Rig, Row};
 
 /// CFL number. Chosen: a period takes thousands of steps, so the error of the step is about 1e-8.
@@ -91,8 +91,7 @@ pub fn drum(
     rings: u32,
     (integrator, cfl, samples): (IntegratorKind, f64, f64),
 ) -> Result<(f64, FilmSimulation), String> {
-    let [radius, tension, share] =
-        ["radius", "tension", "amplitude"].map(|key| number(&format!("stretched_disc/{key}")));
+    let [radius, tension, share] = entry("stretched_disc", ["radius", "tension", "amplitude"]);
     let film = Film::PAPER_ELASTIC;
     // S = E/(1−ν) e for an equal biaxial strain e.
     let stress = tension / film.thickness;
@@ -124,22 +123,16 @@ pub fn drum(
 
 /// The drum, against its exact frequencies.
 pub fn stretched_disc(rig: &Rig) -> Outcome {
-    let [raw, band, least] =
-        ["raw_band", "band", "order"].map(|key| number(&format!("stretched_disc/{key}")));
+    let [raw, band, least] = entry("stretched_disc", ["raw_band", "band", "order"]);
     let mut judged = Vec::new();
     for mode in drum_modes() {
         let explicit = (IntegratorKind::Explicit, CFL, SAMPLES);
         let run = |rings: u32| Ok::<f64, String>(drum(rig, &mode, rings, explicit)?.0);
         let expected = mode.frequency;
         let values = [run(8)?, run(16)?, run(32)?];
-        let errors = values.map(|value| value / expected - 1.0);
-        let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
         let name = format!("({},{})", mode.diameters, mode.circles);
-        judged.push(
-            Row::new(&format!("frequency {name}, finest mesh, Hz"), values[2], expected, raw)
-                .with_least_order(seen, least)
-                .with_errors(errors),
-        );
+        let quantity = format!("frequency {name}, finest mesh, Hz");
+        judged.push(Row::converging(&quantity, values, expected, raw, least));
         let limit = richardson(values[1], values[2]);
         judged.push(Row::new(&format!("frequency {name}, Richardson, Hz"), limit, expected, band));
     }
@@ -156,7 +149,7 @@ fn centrifugal_displacement(film: &Film, radius: f64, rate: f64, r: f64) -> f64 
 /// A free disc that spins.
 pub fn spinning_disc(rig: &Rig) -> Outcome {
     let [radius, rate, share, band] =
-        ["radius", "rate", "amplitude", "band"].map(|key| number(&format!("spinning_disc/{key}")));
+        entry("spinning_disc", ["radius", "rate", "amplitude", "band"]);
     let film = Film::PAPER_ELASTIC;
     let mut judged = Vec::new();
     for row in rows("spinning_disc") {
@@ -190,13 +183,8 @@ pub fn spinning_disc(rig: &Rig) -> Outcome {
             Ok(found * TAU / rate)
         };
         let values = [run(4)?, run(8)?, run(16)?];
-        let errors = values.map(|value| value / expected - 1.0);
         let quantity = format!("p/Omega of mode ({diameters},{})", row[1]);
-        judged.push(
-            Row::new(&quantity, values[2], expected, band)
-                .with_order(order(errors[1], errors[2]))
-                .with_errors(errors),
-        );
+        judged.push(Row::refined(&quantity, values, expected, band));
     }
     Ok(judged)
 }

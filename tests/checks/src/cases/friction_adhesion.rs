@@ -14,7 +14,7 @@ use billow_solver::scene::timeline::Phase;
 use nalgebra::Vector3;
 
 use super::contact_rig::{monitored_contact, run_recorded};
-use super::reference::number;
+use super::reference::{entry, number};
 use super::rig::held;
 use super::row::worse;
 use super::{Outcome, Rig, Row};
@@ -93,7 +93,7 @@ fn pulled(rig: &Rig, pull: f64, pressure: f64) -> Result<[f64; 2], String> {
 /// Adhesive sheets, pulled below and above the pull-off pressure.
 pub fn adhesion(rig: &Rig) -> Outcome {
     let [pressure, below, above, parted] =
-        ["pressure", "below", "above", "parted"].map(|key| number(&format!("adhesion/{key}")));
+        entry("adhesion", ["pressure", "below", "above", "parted"]);
     let [_, highest] = pulled(rig, below * pressure, pressure)?;
     let [lowest, _] = pulled(rig, above * pressure, pressure)?;
     Ok(vec![

@@ -16,9 +16,9 @@ use billow_solver::scene::{Film, GasSupply, IntegratorKind, Species};
 
 use super::gas_column::column;
 use super::piston_model;
-use super::reference::{number, rows};
+use super::reference::{entry, number, rows};
 use super::rig::{advance, inflow};
-use super::row::{order, self_convergence_order};
+use super::row::self_convergence_order;
 use super::{Outcome, Rig, Row};
 
 /// A moving plate on gas.
@@ -58,8 +58,7 @@ fn injection() -> Phase {
 
 /// Position, m, of the plate at a time, s: x = C t^1.5.
 pub fn injected_exact(time: f64) -> f64 {
-    let [mass, rate, entering] =
-        ["mass", "rate", "inflow_temperature"].map(|key| number(&format!("injected_piston/{key}")));
+    let [mass, rate, entering] = entry("injected_piston", ["mass", "rate", "inflow_temperature"]);
     let cp = number("nitrogen/cp");
     let gamma = cp / (cp - number("nitrogen/gas_constant"));
     let square = rate * cp * entering / (mass * (0.75 / (gamma - 1.0) + 1.125));
@@ -72,8 +71,7 @@ pub fn injected_exact(time: f64) -> f64 {
 /// A failure of the run.
 pub fn injected(rig: &Rig, integrator: IntegratorKind, cfl: f64) -> Result<FilmSimulation, String> {
     let [mass, rate, entering, c, start, end] =
-        ["mass", "rate", "inflow_temperature", "C", "start", "end"]
-            .map(|key| number(&format!("injected_piston/{key}")));
+        entry("injected_piston", ["mass", "rate", "inflow_temperature", "C", "start", "end"]);
     let cp = number("nitrogen/cp");
     let gamma = cp / (cp - number("nitrogen/gas_constant"));
     let piston = Piston {
@@ -94,21 +92,17 @@ pub fn injected(rig: &Rig, integrator: IntegratorKind, cfl: f64) -> Result<FilmS
 
 /// The injected piston, with the step halved twice.
 pub fn injected_piston(rig: &Rig) -> Outcome {
-    let [rate, entering, end] =
-        ["rate", "inflow_temperature", "end"].map(|key| number(&format!("injected_piston/{key}")));
+    let [rate, entering, end] = entry("injected_piston", ["rate", "inflow_temperature", "end"]);
     let cp = number("nitrogen/cp");
     let run = |cfl| injected(rig, IntegratorKind::Explicit, cfl);
     let runs = [run(0.16)?, run(0.08)?, run(0.04)?];
-    let expected = number("injected_piston/position_at_50_ms");
-    let errors = runs.each_ref().map(|film| height(&film.view()) / expected - 1.0);
-    let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
+    let [expected, band, least] = entry("injected_piston", ["position_at_50_ms", "band", "order"]);
+    let heights = runs.each_ref().map(|film| height(&film.view()));
     let finest = &runs[2];
     let enthalpy = rate * end * cp * entering;
     let kinetic_fraction = finest.view().kinetic_energy() / enthalpy;
     Ok(vec![
-        Row::new("x at 50 ms, m", height(&finest.view()), expected, number("injected_piston/band"))
-            .with_least_order(seen, number("injected_piston/order"))
-            .with_errors(errors),
+        Row::converging("x at 50 ms, m", heights, expected, band, least),
         Row::new(
             "kinetic energy over enthalpy in",
             kinetic_fraction,

@@ -15,7 +15,7 @@ use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{GasSupply, HeatTransfer};
 
 use super::gas_column::{column, rigid_vessel};
-use super::reference::{number, rows};
+use super::reference::{entry, number, rows};
 use super::rig::{advance, inflow, temperature};
 use super::{Outcome, Rig, Row};
 
@@ -43,9 +43,10 @@ fn mass_defect(film: &FilmView<'_>, expected: f64) -> f64 {
 /// Filling of a vessel that contains gas, and of an empty one.
 pub fn tank_filling(rig: &Rig) -> Outcome {
     let rate = 5e-3;
-    let [initial, start, entering, band] =
-        ["initial_mass", "initial_temperature", "inflow_temperature", "band"]
-            .map(|key| number(&format!("tank_filling/{key}")));
+    let [initial, start, entering, band] = entry(
+        "tank_filling",
+        ["initial_mass", "initial_temperature", "inflow_temperature", "band"],
+    );
     let phase = inflow(rate, entering);
     let mut tank = rig.start(&vessel(0.6, nitrogen_supply(), initial, start))?;
     let mut judged = Vec::new();

@@ -9,7 +9,7 @@ use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{GasSupply, HeatTransfer, Species, Stepping};
 
 use super::gas_vessel::emptying_time;
-use super::reference::{number, rows};
+use super::reference::{entry, number, rows};
 use super::rig::inflow;
 use super::row::order;
 use super::{Outcome, Rig, Row};
@@ -93,9 +93,10 @@ pub fn cooling(_: &Rig) -> Outcome {
 
 /// Filling of a rigid tank.
 pub fn tank_filling(_: &Rig) -> Outcome {
-    let [initial, start, entering, band] =
-        ["initial_mass", "initial_temperature", "inflow_temperature", "band"]
-            .map(|key| number(&format!("tank_filling/{key}")));
+    let [initial, start, entering, band] = entry(
+        "tank_filling",
+        ["initial_mass", "initial_temperature", "inflow_temperature", "band"],
+    );
     let gas = Gas::new(&nitrogen_supply(), 293.0, 1.0);
     let mut run = tank(gas, 0.3, initial, start);
     let phase = Phase { packed: true, ..inflow(5e-3, entering) };
@@ -115,8 +116,7 @@ pub fn tank_filling(_: &Rig) -> Outcome {
 pub fn injected(stepping: Stepping) -> Result<PistonRun, String> {
     let gas = Gas::new(&nitrogen_supply(), 293.0, 1.0);
     let [mass, rate, entering, c, start, end] =
-        ["mass", "rate", "inflow_temperature", "C", "start", "end"]
-            .map(|key| number(&format!("injected_piston/{key}")));
+        entry("injected_piston", ["mass", "rate", "inflow_temperature", "C", "start", "end"]);
     let gamma = gas.gamma();
     let state = PistonState {
         height: c * libm::pow(start, 1.5),
@@ -167,8 +167,8 @@ pub fn from_dead_volume(area: f64, volume: f64, tolerance: f64) -> Result<f64, S
 /// Displacement at 50 ms, m, by the classical Runge-Kutta method on the energy balance
 /// U = Ḣ t − M ẋ²/2, with Richardson's extrapolation. It shares no code with the solver.
 fn extrapolated(area: f64, volume: f64) -> f64 {
-    let [mass, rate, entering, end] = ["mass", "rate", "inflow_temperature", "end"]
-        .map(|key| number(&format!("injected_piston/{key}")));
+    let [mass, rate, entering, end] =
+        entry("injected_piston", ["mass", "rate", "inflow_temperature", "end"]);
     let cp = number("nitrogen/cp");
     let excess = cp / (cp - number("nitrogen/gas_constant")) - 1.0;
     let power = rate * cp * entering;

@@ -30,6 +30,14 @@ pub fn number(path: &str) -> f64 {
     find(path).as_f64().unwrap_or_else(|| panic!("{path} in tests/reference is not a number"))
 }
 
+/// The numbers of these keys of an entry.
+///
+/// # Panics
+/// If there is none.
+pub fn entry<const N: usize>(path: &str, keys: [&str; N]) -> [f64; N] {
+    keys.map(|key| number(&format!("{path}/{key}")))
+}
+
 /// The rows of a table, `path/rows`.
 ///
 /// # Panics

@@ -98,10 +98,31 @@ impl Row {
         self
     }
 
+    /// The value of the finest of three steps or meshes, each half of the one before. The observed order of the last two
+    /// is told, and the errors of all.
+    pub fn refined(quantity: &str, values: [f64; 3], reference: f64, band: f64) -> Self {
+        let errors = values.map(|value| value / reference - 1.0);
+        let row = Self::new(quantity, values[2], reference, band);
+        row.with_order(order(errors[1], errors[2])).with_errors(errors)
+    }
+
+    /// The same, where both observed orders must be `least` or more.
+    pub fn converging(
+        quantity: &str,
+        values: [f64; 3],
+        reference: f64,
+        band: f64,
+        least: f64,
+    ) -> Self {
+        let errors = values.map(|value| value / reference - 1.0);
+        let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
+        let row = Self::new(quantity, values[2], reference, band);
+        row.with_least_order(seen, least).with_errors(errors)
+    }
+
     /// With the signed errors of three steps or meshes as a note.
     #[must_use]
-    pub fn with_errors(self, errors: [f64; 3]) -> Self {
-        let [a, b, c] = errors;
+    pub fn with_errors(self, [a, b, c]: [f64; 3]) -> Self {
         self.with_note(&format!("errors {a:.2e} {b:.2e} {c:.2e}"))
     }
 }

@@ -14,8 +14,8 @@ use billow_solver::scene::{Film, GasSupply, IntegratorKind};
 use billow_solver::system::PressureLoad;
 
 use super::oscillation::{extrema, frequency};
-use super::reference::{number, rows};
-use super::row::{order, richardson};
+use super::reference::{entry, number, rows};
+use super::row::richardson;
 use super::{Outcome, Rig, Row};
 
 /// Temperature of the gas, K. Chosen: that of the film, so that its mass follows from its pressure.
@@ -109,8 +109,7 @@ pub fn breathing_sphere_fine(rig: &Rig) -> Outcome {
 }
 
 fn breathing(rig: &Rig, [coarse, middle, fine]: [u32; 3]) -> Outcome {
-    let [band, raw, least] =
-        ["band", "raw_band", "order"].map(|key| number(&format!("breathing_sphere/{key}")));
+    let [band, raw, least] = entry("breathing_sphere", ["band", "raw_band", "order"]);
     let mut judged = Vec::new();
     for row in rows("breathing_sphere") {
         let (pressure, expected) = (row[0], row[1]);
@@ -119,14 +118,8 @@ fn breathing(rig: &Rig, [coarse, middle, fine]: [u32; 3]) -> Outcome {
             radial_frequency(rig, middle, pressure)?,
             radial_frequency(rig, fine, pressure)?,
         ];
-        let errors = values.map(|value| value / expected - 1.0);
-        let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
         let quantity = |what: &str| format!("frequency at {pressure} Pa, {what}, Hz");
-        judged.push(
-            Row::new(&quantity("finest mesh"), values[2], expected, raw)
-                .with_least_order(seen, least)
-                .with_errors(errors),
-        );
+        judged.push(Row::converging(&quantity("finest mesh"), values, expected, raw, least));
         let limit = richardson(values[1], values[2]);
         judged.push(Row::new(&quantity("Richardson"), limit, expected, band));
     }
@@ -156,23 +149,17 @@ fn release(rig: &Rig, level: u32, pressure: f64) -> Result<[f64; 2], String> {
 
 /// A sphere released unstretched: its turning points.
 pub fn released_sphere(rig: &Rig) -> Outcome {
-    let [pressure, lambda, period] = ["p0", "largest_lambda", "period"]
-        .map(|key| number(&format!("breathing_sphere/released/{key}")));
-    let [band, raw, least] =
-        ["band", "raw_band", "order"].map(|key| number(&format!("breathing_sphere/{key}")));
+    let [pressure, lambda, period] =
+        entry("breathing_sphere/released", ["p0", "largest_lambda", "period"]);
+    let [band, raw, least] = entry("breathing_sphere", ["band", "raw_band", "order"]);
     let runs = [release(rig, 3, pressure)?, release(rig, 4, pressure)?, release(rig, 5, pressure)?];
     let mut judged = Vec::new();
     for (index, name, expected) in
         [(0, "largest lambda - 1", lambda - 1.0), (1, "period, s", period)]
     {
         let values = runs.map(|run| run[index]);
-        let errors = values.map(|value| value / expected - 1.0);
-        let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
-        judged.push(
-            Row::new(&format!("{name}, finest mesh"), values[2], expected, raw)
-                .with_least_order(seen, least)
-                .with_errors(errors),
-        );
+        let quantity = format!("{name}, finest mesh");
+        judged.push(Row::converging(&quantity, values, expected, raw, least));
         let limit = richardson(values[1], values[2]);
         judged.push(Row::new(&format!("{name}, Richardson"), limit, expected, band));
     }

@@ -12,7 +12,7 @@ use billow_solver::scene::paper::free_film;
 use billow_solver::scene::{Film, IntegratorKind};
 use billow_solver::statics::{Relaxation, StaticSolution, Unsettled};
 
-use super::reference::{number, rows};
+use super::reference::{entry, number, rows};
 use super::rig::held;
 use super::static_equilibrium::equilibrium;
 use super::{Outcome, Rig, Row};
@@ -55,8 +55,7 @@ pub fn relaxed(
 /// A quarter of the upper sheet.
 fn quarter(cells: u32) -> FilmScene {
     let [youngs_modulus, poisson_ratio, thickness, pressure] =
-        ["youngs_modulus", "poisson_ratio", "thickness", "overpressure"]
-            .map(|key| number(&format!("square_airbag/{key}")));
+        entry("square_airbag", ["youngs_modulus", "poisson_ratio", "thickness", "overpressure"]);
     let side = side();
     let film = Film { youngs_modulus, poisson_ratio, thickness, ..Film::PAPER_ELASTIC };
     let shell = grid(cells, cells, side, side);
@@ -77,10 +76,9 @@ fn side() -> f64 {
 
 /// Energy, height and volume on three meshes.
 pub fn square_airbag(rig: &Rig) -> Outcome {
-    let [thickness, volume] =
-        ["thickness", "volume"].map(|key| number(&format!("square_airbag/{key}")));
-    let [energy_band, height_band, volume_band] = ["energy_band", "height_band", "volume_band"]
-        .map(|key| number(&format!("square_airbag/{key}")));
+    let [thickness, volume] = entry("square_airbag", ["thickness", "volume"]);
+    let [energy_band, height_band, volume_band] =
+        entry("square_airbag", ["energy_band", "height_band", "volume_band"]);
     let side = side();
     let (mut judged, mut whole_volume) = (Vec::new(), f64::NAN);
     for row in rows("square_airbag") {

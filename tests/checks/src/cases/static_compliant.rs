@@ -10,9 +10,8 @@ use billow_solver::scene::paper::free_film;
 use billow_solver::statics::StaticSolution;
 
 use super::axisymmetric::{self, Frustum};
-use super::reference::{number, rows};
+use super::reference::{entry, number, rows};
 use super::rig::held;
-use super::row::order;
 use super::static_equilibrium::{equilibrium, mean};
 use super::{Outcome, Rig, Row};
 
@@ -28,8 +27,7 @@ fn load(row: &[f64]) -> (Film, axisymmetric::Film, f64) {
 
 /// The shape of the table.
 fn shape() -> Frustum {
-    let [bottom, top, height] =
-        ["bottom_radius", "top_radius", "height"].map(|key| number(&format!("compliant/{key}")));
+    let [bottom, top, height] = entry("compliant", ["bottom_radius", "top_radius", "height"]);
     Frustum { bottom, top, height }
 }
 
@@ -54,12 +52,8 @@ fn judge<const N: usize>(
     let [(coarse, _), (middle, _), (fine, note)] = meshes;
     let judged = names.iter().enumerate().map(|(index, name)| {
         let values = [coarse[index], middle[index], fine[index]];
-        let errors = values.map(|value| value / expected[index] - 1.0);
         let name = format!("{name}, E {:e} Pa, {:.1} um, {} Pa", row[0], row[1] * 1e6, row[2]);
-        Row::new(&name, values[2], expected[index], number("compliant/band"))
-            .with_order(order(errors[1], errors[2]))
-            .with_errors(errors)
-            .with_note(&note)
+        Row::refined(&name, values, expected[index], number("compliant/band")).with_note(&note)
     });
     judged.collect()
 }

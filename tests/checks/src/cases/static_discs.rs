@@ -14,9 +14,8 @@ use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::paper::free_film;
 use nalgebra::Vector3;
 
-use super::reference::{number, rows};
+use super::reference::{entry, rows};
 use super::rig::held;
-use super::row::order;
 use super::static_equilibrium::{equilibrium, mean};
 use super::{Outcome, Rig, Row};
 
@@ -25,8 +24,7 @@ const THICKNESS: f64 = 1e-4;
 
 /// Height, volume and membrane force of a clamped disc under pressure.
 pub fn clamped_disc(rig: &Rig) -> Outcome {
-    let [size, force, least] =
-        ["size_band", "force_band", "order"].map(|key| number(&format!("clamped_disc/{key}")));
+    let [size, force, least] = entry("clamped_disc", ["size_band", "force_band", "order"]);
     let mut judged = Vec::new();
     for row in rows("clamped_disc") {
         let (radius, pressure) = (row[0], row[3]);
@@ -52,14 +50,8 @@ pub fn clamped_disc(rig: &Rig) -> Outcome {
         let values = [run(8)?, run(16)?, run(32)?];
         let names = ["w0, m", "volume, m3", "N0, N/m"];
         for (index, (name, band)) in names.into_iter().zip([size, size, force]).enumerate() {
-            let expected = row[4 + index];
-            let errors = values.map(|value| value[index] / expected - 1.0);
-            let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
-            judged.push(
-                Row::new(&format!("{name}, at {pressure} Pa"), values[2][index], expected, band)
-                    .with_least_order(seen, least)
-                    .with_errors(errors),
-            );
+            let (name, values) = (format!("{name}, at {pressure} Pa"), values.map(|v| v[index]));
+            judged.push(Row::converging(&name, values, row[4 + index], band, least));
         }
     }
     Ok(judged)
@@ -67,8 +59,7 @@ pub fn clamped_disc(rig: &Rig) -> Outcome {
 
 /// Radius, thickness and volume of the balloon.
 pub fn mylar_balloon(rig: &Rig) -> Outcome {
-    let [radius, size, bulk] =
-        ["radius", "size_band", "volume_band"].map(|key| number(&format!("mylar_balloon/{key}")));
+    let [radius, size, bulk] = entry("mylar_balloon", ["radius", "size_band", "volume_band"]);
     let mut judged = Vec::new();
     for row in rows("mylar_balloon") {
         let pressure = row[0];
@@ -97,14 +88,8 @@ pub fn mylar_balloon(rig: &Rig) -> Outcome {
         let values = [run(8)?.0, run(16)?.0, finest];
         let names = ["r/a", "thickness/a", "V/a3"];
         for (index, (name, band)) in names.into_iter().zip([size, size, bulk]).enumerate() {
-            let expected = row[1 + index];
-            let errors = values.map(|value| value[index] / expected - 1.0);
-            judged.push(
-                Row::new(&format!("{name} at {pressure} Pa"), values[2][index], expected, band)
-                    .with_order(order(errors[1], errors[2]))
-                    .with_errors(errors)
-                    .with_note(&note),
-            );
+            let (name, values) = (format!("{name} at {pressure} Pa"), values.map(|v| v[index]));
+            judged.push(Row::refined(&name, values, row[1 + index], band).with_note(&note));
         }
     }
     Ok(judged)

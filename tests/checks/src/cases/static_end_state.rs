@@ -15,8 +15,7 @@ use billow_solver::scene::paper::{self, free_film};
 use billow_solver::statics::StaticSolution;
 use nalgebra::Vector3;
 
-use super::reference::{number, numbers, rows};
-use super::row::order;
+use super::reference::{entry, number, numbers, rows};
 use super::static_equilibrium::{equilibrium_from, mean};
 use super::{Outcome, Rig, Row};
 
@@ -94,31 +93,17 @@ fn judge(rig: &Rig, meshes: &[Marked; 3], differences: bool) -> Outcome {
     for (index, name) in names.into_iter().enumerate() {
         for (which, row) in rows.iter().enumerate() {
             let values = [0, 1, 2].map(|mesh: usize| found[mesh][which][index]);
-            let errors = values.map(|value| value / row[1 + index] - 1.0);
-            judged.push(
-                Row::new(
-                    &format!("{name}, at {} Pa", row[0]),
-                    values[2],
-                    row[1 + index],
-                    bands[index],
-                )
-                .with_order(order(errors[1], errors[2]))
-                .with_errors(errors),
-            );
+            let quantity = format!("{name}, at {} Pa", row[0]);
+            judged.push(Row::refined(&quantity, values, row[1 + index], bands[index]));
         }
         let expected = rows[1][1 + index] - rows[0][1 + index];
         let values = [0, 1, 2].map(|mesh: usize| found[mesh][1][index] - found[mesh][0][index]);
-        let errors = values.map(|value| value / expected - 1.0);
         if differences {
             let name = format!("{name}, {} less {} Pa", rows[1][0], rows[0][0]);
-            judged.push(
-                Row::new(&name, values[2], expected, difference_band)
-                    .with_order(order(errors[1], errors[2]))
-                    .with_errors(errors)
-                    .with_note(&notes[2]),
-            );
+            let row = Row::refined(&name, values, expected, difference_band);
+            judged.push(row.with_note(&notes[2]));
         } else if let Some(row) = judged.pop() {
-            let [a, b, c] = errors;
+            let [a, b, c] = values.map(|value| value / expected - 1.0);
             let note =
                 format!("errors of the difference between pressures {a:.2e} {b:.2e} {c:.2e}");
             judged.push(row.with_note(&note).with_note(&notes[2]));
@@ -146,8 +131,7 @@ fn pattern_mesh(subdivisions: u32) -> Result<Marked, String> {
 
 /// Circular caps, on a mesh along the meridians.
 pub fn aligned(rig: &Rig) -> Outcome {
-    let [bottom, top, height] =
-        ["bottom_radius", "top_radius", "height"].map(|key| number(&format!("end_state/{key}")));
+    let [bottom, top, height] = entry("end_state", ["bottom_radius", "top_radius", "height"]);
     let meshes = [8, 16, 32].map(|fine| {
         let capped = capped_frustum(fine, [bottom, top], height);
         Marked { shell: capped.shell, rims: capped.rims, poles: capped.poles }

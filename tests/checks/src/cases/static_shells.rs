@@ -20,16 +20,15 @@ use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
 use billow_solver::scene::paper::free_film;
 use nalgebra::Vector3;
 
-use super::reference::{number, rows};
+use super::reference::{entry, rows};
 use super::rig::held;
-use super::row::{order, worse};
+use super::row::worse;
 use super::static_equilibrium::{equilibrium, mean};
 use super::{Outcome, Rig, Row};
 
 /// Stretch of a sphere.
 pub fn sphere(rig: &Rig) -> Outcome {
-    let [radius, band, least] =
-        ["radius", "band", "order"].map(|key| number(&format!("static_sphere/{key}")));
+    let [radius, band, least] = entry("static_sphere", ["radius", "band", "order"]);
     let mut judged = Vec::new();
     for row in rows("static_sphere") {
         let (pressure, expected) = (row[0], row[1]);
@@ -43,13 +42,8 @@ pub fn sphere(rig: &Rig) -> Outcome {
             Ok(loaded / unloaded - 1.0)
         };
         let values = [run(2)?, run(3)?, run(4)?];
-        let errors = values.map(|value| value / expected - 1.0);
-        let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
-        judged.push(
-            Row::new(&format!("lambda - 1 at {pressure} Pa"), values[2], expected, band)
-                .with_least_order(seen, least)
-                .with_errors(errors),
-        );
+        let quantity = format!("lambda - 1 at {pressure} Pa");
+        judged.push(Row::converging(&quantity, values, expected, band, least));
     }
     Ok(judged)
 }
@@ -62,9 +56,10 @@ fn plate(nodes: Vec<u32>, force: f64) -> FilmSupport {
 
 /// Both stretches of a cylinder with closed ends.
 pub fn cylinder(rig: &Rig) -> Outcome {
-    let [radius, length, pressure, axial, hoop, band, least] =
-        ["radius", "length", "overpressure", "axial", "hoop", "band", "order"]
-            .map(|key| number(&format!("static_cylinder/{key}")));
+    let [radius, length, pressure, axial, hoop, band, least] = entry(
+        "static_cylinder",
+        ["radius", "length", "overpressure", "axial", "hoop", "band", "order"],
+    );
     let stretched = radius * (1.0 + hoop);
     let run = |along: u32| -> Result<[f64; 2], String> {
         let around = 8 * along;
@@ -88,11 +83,7 @@ pub fn cylinder(rig: &Rig) -> Outcome {
     };
     let values = [run(3)?, run(6)?, run(12)?];
     let row = |index: usize, name: &str, expected: f64| {
-        let errors = values.map(|value| value[index] / expected - 1.0);
-        let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
-        Row::new(name, values[2][index], expected, band)
-            .with_least_order(seen, least)
-            .with_errors(errors)
+        Row::converging(name, values.map(|value| value[index]), expected, band, least)
     };
     Ok(vec![row(0, "lambda_hoop - 1", hoop), row(1, "lambda_axial - 1", axial)])
 }
@@ -100,8 +91,7 @@ pub fn cylinder(rig: &Rig) -> Outcome {
 /// Membrane forces of a cone far from its ends.
 pub fn cone(rig: &Rig) -> Outcome {
     let [bottom, top, height, pressure, band] =
-        ["bottom_radius", "top_radius", "height", "overpressure", "band"]
-            .map(|key| number(&format!("cone/{key}")));
+        entry("cone", ["bottom_radius", "top_radius", "height", "overpressure", "band"]);
     let slope = (bottom - top) / height;
     let cos = 1.0 / (1.0 + slope * slope).sqrt();
     let run = |along: u32| -> Result<[[f64; 2]; 2], String> {
@@ -141,12 +131,8 @@ pub fn cone(rig: &Rig) -> Outcome {
     let values = [run(12)?, run(24)?, run(48)?];
     let mut judged = Vec::new();
     for (index, name) in ["N_hoop", "N_meridional"].into_iter().enumerate() {
-        let errors = values.map(|[mean, _]| mean[index] - 1.0);
-        judged.push(
-            Row::new(&format!("{name}/(closed form), mean"), values[2][0][index], 1.0, band)
-                .with_order(order(errors[1], errors[2]))
-                .with_errors(errors),
-        );
+        let means = values.map(|[mean, _]| mean[index]);
+        judged.push(Row::refined(&format!("{name}/(closed form), mean"), means, 1.0, band));
         let largest = values[2][1][index];
         judged.push(Row::at_most(&format!("{name}, largest error of an element"), largest, band));
     }

@@ -20,9 +20,8 @@ use billow_solver::scene::motion::{Motion, Profile, Rotation};
 use billow_solver::scene::paper::free_film;
 use nalgebra::Vector3;
 
-use super::reference::{number, rows};
+use super::reference::{entry, number, rows};
 use super::rig::held;
-use super::row::order;
 use super::static_equilibrium::equilibrium;
 use super::{Outcome, Rig, Row};
 
@@ -81,21 +80,17 @@ pub fn beam(rig: &Rig) -> Outcome {
         let (requested, expected) = (row[0], row[1]);
         let values =
             [bend(rig, 8, requested)?, bend(rig, 16, requested)?, bend(rig, 32, requested)?];
-        let errors = values.map(|[_, value]| value / expected - 1.0);
-        judged.push(
-            Row::new(&format!("2M/(P h) at k {requested}"), values[2][1], expected, band)
-                .with_order(order(errors[1], errors[2]))
-                .with_errors(errors)
-                .with_note(&format!("k {:.6}", values[2][0])),
-        );
+        let quantity = format!("2M/(P h) at k {requested}");
+        let row = Row::refined(&quantity, values.map(|[_, value]| value), expected, band);
+        judged.push(row.with_note(&format!("k {:.6}", values[2][0])));
     }
     Ok(judged)
 }
 
 /// Torque and wrinkle radius of an annulus in torsion by this angle, rad; and a note.
 fn twist(rig: &Rig, rings: u32, angle: f64) -> Result<([f64; 2], String), String> {
-    let [inner, outer, outward] = ["inner_radius", "outer_radius", "outward"]
-        .map(|key| number(&format!("annulus_torsion/{key}")));
+    let [inner, outer, outward] =
+        entry("annulus_torsion", ["inner_radius", "outer_radius", "outward"]);
     let around = 6 * rings;
     let radius = |k: u32| inner + (outer - inner) * f64::from(k) / f64::from(rings);
     let shell = revolved(rings, around, true, |k| [radius(k), 0.0]);
@@ -131,24 +126,16 @@ fn twist(rig: &Rig, rings: u32, angle: f64) -> Result<([f64; 2], String), String
 /// The annulus at four angles.
 pub fn annulus_torsion(rig: &Rig) -> Outcome {
     let band = number("annulus_torsion/band");
-    let [inner, outer] =
-        ["inner_radius", "outer_radius"].map(|key| number(&format!("annulus_torsion/{key}")));
+    let [inner, outer] = entry("annulus_torsion", ["inner_radius", "outer_radius"]);
     let finest = 40;
     let mut judged = Vec::new();
     for row in rows("annulus_torsion") {
         let (angle, torque, radius) = (row[0], row[1], row[2]);
         let (values, note) = twist(rig, finest, angle)?;
-        let errors = [
-            twist(rig, finest / 4, angle)?.0[0] / torque - 1.0,
-            twist(rig, finest / 2, angle)?.0[0] / torque - 1.0,
-            values[0] / torque - 1.0,
-        ];
-        judged.push(
-            Row::new(&format!("torque at {angle} rad, N m"), values[0], torque, band)
-                .with_order(order(errors[1], errors[2]))
-                .with_errors(errors)
-                .with_note(&note),
-        );
+        let coarse = [twist(rig, finest / 4, angle)?.0[0], twist(rig, finest / 2, angle)?.0[0]];
+        let torques = [coarse[0], coarse[1], values[0]];
+        let quantity = format!("torque at {angle} rad, N m");
+        judged.push(Row::refined(&quantity, torques, torque, band).with_note(&note));
         let element = (outer - inner) / f64::from(finest);
         judged.push(
             Row::at_most(

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::convergence::{self, MeshCheck, ORDERS, SceneRuns, Trend, calibrate, fit, levels};
 use billow_study::accuracy::{MeshErrors, PROMISED};
 use billow_study::cli::options::{OutputOptions, QuietOption, ResultsOption};
-use billow_study::cli::print::{Heading, fraction, print_quantities};
+use billow_study::cli::print::{fraction, print_rows};
 use billow_study::cli::target::{StudyArgs, folder};
 use billow_study::cli::{Format, stored};
 use billow_study::input::value::Value;
@@ -76,9 +76,8 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         let value = names.join(", ");
         return Err(Error::invalid_option("study", &value, "has no series of meshes", allowed, ""));
     }
-    let headings: Vec<Heading> = COLUMNS.iter().map(|name| Heading::plain(*name)).collect();
     let format = args.output.format();
-    print_quantities(&headings, &rows, format, out)?;
+    print_rows(&COLUMNS, &rows, format, out)?;
     if format == Format::Table && !args.quiet.quiet {
         eprintln!(
             "{} scenes; limit: of the fit f0 + a h^order, h = 1/n, order from {} to {}; change: limit over the finest \
@@ -112,19 +111,18 @@ fn print_checks(
         return Err(Error::invalid_option("study", &names.join(", "), problem, allowed, ""));
     }
     let format = args.output.format();
-    let whole = |number: usize| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));
     let row = |check: &MeshCheck| {
-        let mut row = vec![
-            Value::Integer(i64::from(check.subdivisions)),
-            Value::Text(check.measure.to_owned()),
-        ];
-        row.extend([whole(check.kept.met), whole(check.kept.of)]);
-        row.extend([fraction(check.error, format), fraction(check.of_table, format)]);
-        row
+        vec![
+            check.subdivisions.into(),
+            check.measure.into(),
+            check.kept.met.into(),
+            check.kept.of.into(),
+            fraction(check.error, format),
+            fraction(check.of_table, format),
+        ]
     };
-    let headings = ["subdivisions", "measure", "kept", "of", "median_error", "median_of_table"];
-    let headings: Vec<Heading> = headings.into_iter().map(Heading::plain).collect();
-    print_quantities(&headings, &checks.iter().map(row).collect::<Vec<_>>(), format, out)?;
+    let columns = ["subdivisions", "measure", "kept", "of", "median_error", "median_of_table"];
+    print_rows(&columns, &checks.iter().map(row).collect::<Vec<_>>(), format, out)?;
     if format == Format::Table && !args.quiet.quiet {
         eprintln!(
             "kept: runs whose difference from n {} is within the error of the table; medians: of these differences, and of \
@@ -155,24 +153,24 @@ fn rows(scene: &SceneRuns) -> Vec<Vec<Value>> {
         let levels = levels(scene, measure);
         let fit = fit(&levels)?;
         let (first, last) = (levels.first()?, levels.last()?);
-        let relative = |value: f64| {
-            if last.value == 0.0 { Value::Null } else { Value::Number(value / last.value) }
-        };
         // A fitted number that is no limit must not be read as one.
         let trend = convergence::trend(&levels, &fit);
-        let known = |value: Value| if trend == Trend::Limit { value } else { Value::Null };
-        let text = |text: &str| Value::Text(text.to_owned());
+        let known = |value: f64| Value::from((trend == Trend::Limit).then_some(value));
+        let relative = |value: f64| match last.value {
+            0.0 => Value::Null,
+            finest => known(value / finest),
+        };
         Some(vec![
-            text(&scene.label),
-            text(measure.name()),
-            text(measure.column().unit),
-            Value::Text(format!("{} to {}", first.subdivisions, last.subdivisions)),
-            Value::Number(last.value),
-            known(Value::Number(fit.limit)),
-            known(relative(fit.limit - last.value)),
-            known(relative(fit.uncertainty)),
-            Value::Number(fit.order),
-            text(trend.name()),
+            scene.label.as_str().into(),
+            measure.name().into(),
+            measure.column().unit.into(),
+            format!("{} to {}", first.subdivisions, last.subdivisions).into(),
+            last.value.into(),
+            known(fit.limit),
+            relative(fit.limit - last.value),
+            relative(fit.uncertainty),
+            fit.order.into(),
+            trend.name().into(),
         ])
     };
     measures.filter_map(row).collect()
@@ -187,13 +185,8 @@ fn write_table(
     let Some(table) = calibrate(scenes, names, reference) else {
         let allowed = "the subdivisions of a mesh that a run of these results has";
         let value = reference.to_string();
-        return Err(Error::invalid_option(
-            "--reference",
-            &value,
-            "no scene has this mesh",
-            allowed,
-            "",
-        ));
+        let problem = "no scene has this mesh";
+        return Err(Error::invalid_option("--reference", &value, problem, allowed, ""));
     };
     let mut text = serde_json::to_string_pretty(&table).unwrap_or_default();
     text.push('\n');
@@ -201,23 +194,4 @@ fn write_table(
     let scenes = table.errors.all().iter().map(|entry| entry.scenes).max().unwrap_or(0);
     eprintln!("{}: {} errors, of up to {scenes} scenes", path.display(), table.errors.all().len());
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_measure_is_a_number_and_stands_once() {
-        let mut names: Vec<&str> = PROMISED
-            .iter()
-            .map(|promised| promised.measure)
-            .chain(MEASURES)
-            .map(ColumnId::name)
-            .collect();
-        let count = names.len();
-        names.sort_unstable();
-        names.dedup();
-        assert_eq!(names.len(), count);
-    }
 }
