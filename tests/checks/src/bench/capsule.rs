@@ -143,11 +143,14 @@ impl<'a> Progress<'a> {
     }
 }
 
+/// End time with `--quick`, s.
+const QUICK_END: f64 = 0.05;
+
 /// End time of a mesh's run, s. Chosen: the run takes minutes at most.
 fn end_time(effort: Effort, subdivisions: u32) -> f64 {
     match (effort, subdivisions) {
         (Effort::Quick, n) if n > LARGEST_RUN => 0.0,
-        (Effort::Quick, _) => 0.05,
+        (Effort::Quick, _) => QUICK_END,
         (_, n) if n > LARGEST_RUN => EARLY,
         (Effort::Usual, 0..=8) | (Effort::Full, 9..) => 0.3,
         (Effort::Usual, _) => 0.1,
@@ -172,20 +175,21 @@ pub(super) fn measure(
     }
     let mut progress = Progress::of(&capsule)?;
     let mut states = vec![("stowed", progress.film.clone())];
-    let full = subdivisions <= LARGEST_RUN;
-    for time in [EARLY, RISING, 0.05, 0.1, 0.3, 1.5].into_iter().filter(|time| *time <= end) {
+    // Times, s, and whether the cost to them is a case; the other one is the state `rising`.
+    let times: &[(f64, bool)] = match plan.effort {
+        Effort::Quick => &[(RISING, false), (QUICK_END, true)],
+        _ => &[(EARLY, true), (RISING, false), (0.1, true), (0.3, true), (1.5, true)],
+    };
+    for (time, is_case) in times.iter().copied().filter(|(time, _)| *time <= end) {
         progress.run_to(time)?;
-        if time == RISING {
+        if !is_case {
             states.push(("rising", progress.film.clone()));
-        }
-        let is_end = time == end;
-        let is_case = time != RISING && time != 0.05 && plan.effort != Effort::Quick;
-        if plan.has(Part::Cases) && (is_end || is_case) {
+        } else if plan.has(Part::Cases) {
             cases.push(fastest(&capsule, &progress, time, plan)?);
         }
-        if is_end && full {
-            states.push(("end", progress.film.clone()));
-        }
+    }
+    if subdivisions <= LARGEST_RUN {
+        states.push(("end", progress.film.clone()));
     }
     if plan.has(Part::Stages) {
         for (name, film) in states {

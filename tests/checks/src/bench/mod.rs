@@ -4,10 +4,10 @@
 //! cost = wall time / (steps × elements)        ns per element and step
 //! ```
 //!
-//! The paper's capsule under 5 g/s ([`capsule`]) is measured in three states: stowed, rising, at the
-//! end. Parts: the machine itself ([`machine`]), the step without contact and a plain scalar reference ([`kernels`]),
-//! stages of a step ([`stages`]), whole runs ([`capsule`]), quiet filling with `explicit` and `hybrid`
-//! ([`quiet_filling`]), static equilibria ([`statics`]). [`targets`] compares the results with the goals of the
+//! The paper's capsule under 5 g/s (`capsule`) is measured in three states: stowed, rising, at the
+//! end. Parts: the machine itself (`machine`), the step without contact and a plain scalar reference (`kernels`),
+//! stages of a step (`stages`), whole runs (`capsule`), quiet filling with `explicit` and `hybrid`
+//! (`quiet_filling`), static equilibria (`statics`). `targets` compares the results with the goals of the
 //! project; a missed target is not an error.
 
 use std::io::Write;

@@ -259,7 +259,7 @@ pub fn read(path: &Path) -> Result<(Vec<u8>, Vec<Map>)> {
 type Checked<T> = std::result::Result<T, InputError>;
 
 /// The error of a value; the file is added later.
-fn refuse(key: &str, value: impl ToString, problem: &str, allowed: &str) -> InputError {
+fn refuse(key: &str, value: &dyn ToString, problem: &str, allowed: &str) -> InputError {
     let [file, hint] = [String::new(), String::new()];
     let [key, problem, allowed] = [key, problem, allowed].map(str::to_owned);
     InputError { file, key, value: value.to_string(), problem, allowed, hint }
@@ -275,7 +275,7 @@ fn named<T>(
 ) -> Checked<T> {
     find(name).ok_or_else(|| {
         let near = did_you_mean(name, known.iter().copied());
-        let error = refuse(key, name, what, &known.join(", "));
+        let error = refuse(key, &name, what, &known.join(", "));
         InputError { hint: near.unwrap_or_default(), ..error }
     })
 }
@@ -284,7 +284,7 @@ fn maps(text: &str) -> Checked<Vec<Map>> {
     let reader = &mut serde_json::Deserializer::from_str(text);
     let file: FileText = serde_path_to_error::deserialize(reader).map_err(|error| {
         let key = error.path().to_string();
-        refuse(&key, "", &error.inner().to_string(), "docs/guide/stability.md lists the keys")
+        refuse(&key, &"", &error.inner().to_string(), "docs/guide/stability.md lists the keys")
     })?;
     let mut maps: Vec<Map> = Vec::new();
     for (index, text) in file.maps.into_iter().enumerate() {
@@ -332,7 +332,7 @@ impl Reader<'_> {
         let rule = |(index, rule): (usize, RuleText)| {
             let key = format!("expect[{index}]");
             Ok(Rule {
-                statuses: self.statuses(&key, rule.status.into_list())?,
+                statuses: self.statuses(&key, &rule.status.into_list())?,
                 of: self.choice(&key, rule.methods, rule.place)?,
                 why: rule.why,
             })
@@ -355,7 +355,7 @@ impl Reader<'_> {
         let key = format!("{}.axes", self.key);
         if !(1..=2).contains(&given.len()) {
             let allowed = "one or two parameters with their values";
-            return Err(refuse(&key, given.len(), "is no number of axes", allowed));
+            return Err(refuse(&key, &given.len(), "is no number of axes", allowed));
         }
         let axis = |(name, values): (String, Vec<f64>)| {
             let key = format!("{key}.{name}");
@@ -366,7 +366,7 @@ impl Reader<'_> {
             let ascending = values.windows(2).all(|pair| pair[0] < pair[1]);
             if !(1..=MAX_VALUES).contains(&values.len()) || !ascending {
                 let allowed = format!("1 to {MAX_VALUES} values, each larger than the one before");
-                return Err(refuse(&key, "", "cannot be an axis", &allowed));
+                return Err(refuse(&key, &"", "cannot be an axis", &allowed));
             }
             Ok(Axis { parameter, values })
         };
@@ -416,14 +416,14 @@ impl Reader<'_> {
             let range = match value.into_list().as_slice() {
                 [one] => [*one; 2],
                 [from, to] => [*from, *to],
-                _ => return Err(refuse(&key, "", "is no range", "a value, or [from, to]")),
+                _ => return Err(refuse(&key, &"", "is no range", "a value, or [from, to]")),
             };
             place.push((parameter.name, range));
         }
         Ok(Choice { methods: self.methods(&format!("{key}.methods"), methods)?, place })
     }
 
-    fn statuses(&self, key: &str, words: Vec<String>) -> Checked<Vec<String>> {
+    fn statuses(&self, key: &str, words: &[String]) -> Checked<Vec<String>> {
         let known: Vec<&str> = [FAILS, ANY, Status::Done.name()]
             .into_iter()
             .chain(Status::all().filter(|status| status.is_failure()).map(Status::name))
@@ -440,7 +440,7 @@ fn checked(parameter: &Parameter, key: &str, value: f64) -> Checked<f64> {
     if !(from..=to).contains(&value) || parameter.whole && value.fract() != 0.0 {
         let whole = if parameter.whole { "whole number" } else { "number" };
         let allowed = format!("a {whole} from {from} to {to} ({})", parameter.unit);
-        return Err(refuse(key, value, "out of range", &allowed));
+        return Err(refuse(key, &value, "out of range", &allowed));
     }
     Ok(value)
 }
