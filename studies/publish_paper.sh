@@ -50,7 +50,7 @@ chart first-second paper --history z_centre,vz,kinetic_energy --to '1 s' \
   --where "residual_gas == 'burst'" --title "The first second of the paper's cases"
 chart bands paper-ensemble --history z_centre,volume --where 'compression == 1' --to '12 s' \
   --title "Five seeds of each case, compression fraction 1"
-chart outcomes paper-ensemble --outcome --map compression,strategy
+chart outcomes paper-ensemble --measure verdict --map compression,strategy
 chart mesh paper-mesh --measure volume_ratio --over subdivisions --by strategy
 
 # Filmstrips: strategy and compression fraction.

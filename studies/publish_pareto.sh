@@ -16,27 +16,31 @@ trap 'rm -rf "$new"' EXIT
 # Exit code 1: jobs failed. They are crosses in the diagrams.
 "$billow" run studies/pareto.json --results "$results" || [ $? -eq 1 ]
 
-rm -f "$results"/charts/pareto*
+rm -f "$results"/charts/work-precision*
 
-# pareto OPTION...: the tables and pictures of one cost. In the overview film at rest counts by its state at the end alone.
-pareto() {
-  "$billow" pareto studies/pareto.json --results "$results" -q \
-    --measures end_state:final_z_rim,end_state:final_volume "$@" | sed "\\|^$results/charts/|d"
+# diagrams OPTION...: the table and the pictures of one cost.
+diagrams() {
+  "$billow" chart studies/pareto.json --results "$results" -q --work-precision "$@" | sed "\\|^$results/charts/|d"
 }
-pareto --cost seconds --peer "$out/peer.json" > "$new/front_seconds.txt"
-pareto --all --format csv > "$new/configurations.csv"
-pareto | tee "$new/front.txt"
+diagrams --cost seconds > "$new/front_seconds.txt"
+diagrams --format csv > "$new/configurations.csv"
+diagrams | tee "$new/front.txt"
 mv "$new"/* "$out"
-cp "$results"/charts/pareto*.svg "$out"
+# pictures of billow have other names than the published ones.
+for picture in "$results"/charts/work-precision*; do
+  name=$(basename "$picture" | sed 's/work-precision/pareto/; s/-/_/g')
+  cp "$picture" "$new/$name"
+done
+cp "$new"/*.svg "$out"
 "$checks" pareto --format csv > "$out/exact.csv"
 cp results/exact/charts/pareto*.svg "$out"
-# Of the pictures over seconds the overview and that with the peer show what the others do not.
+# Of the pictures over seconds the overview and these show what the others do not.
 # In quiet filling integrators are compared, whose steps do not cost the same.
 for picture in pareto pareto_capsule_direct pareto_quiet_filling; do
-  cp "$results/charts/$picture"{,_seconds}.png "$out"
+  cp "$new/$picture"{,_seconds}.png "$out"
 done
 for scene in capsule_residual end_state slow_filling; do
-  cp "$results/charts/pareto_$scene.png" "$out"
+  cp "$new/pareto_$scene.png" "$out"
 done
 for scene in exact injected_piston breathing_sphere square_airbag stretched_disc; do
   cp "results/exact/charts/pareto_$scene.png" "$out"

@@ -45,7 +45,7 @@ fn every_kind_is_drawn_as_svg_and_png() {
             "history-z_rim-pressure",
             &[
                 "Time t (ms)",
-                "Height of the top ring, gas pressure over time",
+                "Mean height of the top ring, gas pressure over time",
                 "5 g/s",
                 "End time 400 ms",
             ][..],
@@ -235,7 +235,7 @@ fn the_default_set_of_a_question_shows_borders_limits_and_medians() {
         }
         assert!(!shown.iter().any(|text| text.contains("Thickness")), "{name}: {shown:?}");
     }
-    let arguments = ["chart", "grid.json", "-q", "--outcome", "--out", "map.svg"];
+    let arguments = ["chart", "grid.json", "-q", "--measure", "safe", "--out", "map.svg"];
     let chosen = ["--map", "residual_gas_mass,strategy", "--where", "mass_flow_rate == '0.5 g/s'"];
     folder.stdout(&[&arguments[..], &chosen].concat());
     let map = texts(&fs::read(folder.path().join("map.svg")).unwrap());

@@ -1,39 +1,29 @@
 //! How the parameters of a chart are shown: one by colour and marker, one by dashes, the others by panels.
 
+use std::collections::BTreeMap;
+
 use super::names;
-use super::parameters::{self, Facets, Group, Parameter};
+use super::parameters::{self, Facets, Parameter};
 use super::{Source, invalid_option};
 use crate::input::value::Value;
 use crate::platform::error::Result;
 use crate::render::figure::legend::{Legend, Sample};
-use crate::render::figure::style::{MAX_COLOURS, MAX_DASHES, Series};
+use crate::render::figure::style::{MAX_DASHES, Series};
 
 /// Most lines in a panel while panels can take the others. Chosen: legible at a glance.
 pub const PREFERRED_LINES: usize = 8;
 /// Most lines in a panel. Chosen: more cannot be distinguished.
-pub const MAX_LINES: usize = 20;
+const MAX_LINES: usize = 20;
 /// Most panels in a figure. Chosen: more do not fit on a page.
 const MAX_PANELS: usize = 12;
 /// Number of values up to which a parameter is preferred for the colours.
 const PREFERRED_COLOURS: usize = 12;
 
-/// How the lines of a chart are distinguished.
-#[derive(Debug, Clone, PartialEq)]
-enum Lines<'a> {
-    /// There is one line in a panel.
-    One,
-    /// One parameter: its values by colour, marker and dashes.
-    Single(Parameter<'a>, Vec<Value>),
-    /// Two parameters: the values of the first by colour and marker, those of the second by dashes.
-    Two([Parameter<'a>; 2], [Vec<Value>; 2]),
-    /// Combinations of several parameters, each with its own style.
-    Combined(Vec<Parameter<'a>>, Vec<Group>),
-}
-
 /// The encoding of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Encoding<'a> {
-    lines: Lines<'a>,
+    /// The parameters of the lines and their values: the first by colour and marker, the second by dashes.
+    lines: Vec<(Parameter<'a>, Vec<Value>)>,
     /// The panels.
     pub panels: Facets<'a>,
 }
@@ -51,195 +41,109 @@ impl<'a> Encoding<'a> {
         by: &[String],
         preferred: usize,
         points: bool,
-        asked: (&str, &str),
+        (option, value): (&str, &str),
     ) -> Result<Self> {
-        let encoding = |lines: Vec<Parameter<'a>>, panels: Vec<Parameter<'a>>| Self {
-            lines: Lines::new(lines, &source.rows, points),
-            panels: parameters::facets(panels, &source.rows),
-        };
-        let found = if by.is_empty() {
-            let first = divided(source, others.clone(), if points { 0 } else { preferred });
-            let found = encoding(first.0, first.1);
-            if found.panels.panels.len() > MAX_PANELS {
-                let more = divided(source, others, MAX_LINES);
-                encoding(more.0, more.1)
-            } else {
-                found
-            }
-        } else {
-            for name in by {
-                source.parameter("--by", name.trim())?;
-            }
-            let place = |parameter: &Parameter<'_>| {
-                by.iter().position(|name| name.trim() == parameter.name())
+        for name in by {
+            source.parameter("--by", name)?;
+        }
+        let dashes = if points { 0 } else { MAX_DASHES };
+        let divided = |preferred: usize| {
+            let mut panels = others.clone();
+            let count = |parameter: &Parameter<'a>| parameter.values(&source.rows).len();
+            let mut lines = Vec::new();
+            // Takes the first parameter that `by` names, or any if it is empty, with at most this number of values.
+            let mut take = |most: usize| {
+                let named = |parameter: &Parameter<'a>| match by.get(lines.len()) {
+                    Some(name) => parameter.name() == name,
+                    None => by.is_empty(),
+                };
+                let fits = |parameter: &Parameter<'a>| named(parameter) && count(parameter) <= most;
+                let found = panels.iter().position(fits)?;
+                let parameter = panels.remove(found);
+                let values = parameter.values(&source.rows);
+                let count = values.len();
+                lines.push((parameter, values));
+                Some(count)
             };
-            let (mut lines, panels): (Vec<_>, Vec<_>) =
-                others.into_iter().partition(|parameter| place(parameter).is_some());
-            lines.sort_by_key(|parameter| place(parameter));
-            encoding(lines, panels)
+            let most = if by.is_empty() { PREFERRED_COLOURS } else { usize::MAX };
+            if let Some(colours) = take(most).or_else(|| take(MAX_LINES)) {
+                let lines = if by.is_empty() { preferred / colours } else { MAX_DASHES };
+                take(dashes.min(lines));
+            }
+            Self { lines, panels: parameters::facets(panels, &source.rows) }
         };
-        found.check_size(asked)?;
-        Ok(found)
-    }
-
-    /// Refuses a figure with too many panels or lines.
-    fn check_size(&self, (option, value): (&str, &str)) -> Result<()> {
-        let (panels, lines) = (self.panels.panels.len(), self.lines.count());
-        let (number, noun, limit) = if panels > MAX_PANELS {
-            (panels, "panels", MAX_PANELS)
-        } else if lines > MAX_LINES {
-            (lines, "lines", MAX_LINES)
-        } else {
-            return Ok(());
+        let mut found = divided(preferred);
+        if by.is_empty() && found.panels.panels.len() > MAX_PANELS {
+            found = divided(MAX_LINES);
+        }
+        let (panels, lines) = (found.panels.panels.len(), found.count());
+        let (number, noun, limit) = match (panels, lines) {
+            (panels, _) if panels > MAX_PANELS => (panels, "panels", MAX_PANELS),
+            (_, lines) if lines > MAX_LINES => (lines, "lines", MAX_LINES),
+            _ => return Ok(found),
         };
-        let varying = self.panels.parameters.iter().chain(self.lines.parameters());
+        let of_lines = found.lines.iter().map(|(parameter, _)| parameter);
         Err(invalid_option(
             option,
             value,
             format!("the chart needs {number} {noun}; nothing is averaged"),
             format!("{limit} {noun} at most"),
-            parameters::fix(varying),
+            parameters::fix(found.panels.parameters.iter().chain(of_lines)),
         ))
     }
 
     /// Number of lines in a panel, at most.
     pub fn count(&self) -> usize {
-        self.lines.count()
+        self.lines.iter().map(|(_, values)| values.len()).product()
+    }
+
+    /// The style of value `colour` of the first parameter and value `dash` of the second one.
+    fn style(&self, colour: usize, dash: usize) -> Series {
+        match self.lines.as_slice() {
+            [] => Series::nth(0),
+            // Of one parameter each part of the style alone is sufficient.
+            [(_, colours)] if colours.len() <= PREFERRED_LINES => Series::nth(colour),
+            [(_, colours), ..] => Series::of_values((colour, colours.len()), dash),
+        }
     }
 
     /// Index of the line of a row, and its style.
     pub fn line(&self, row: usize) -> (usize, Series) {
-        let index = |parameter: &Parameter<'_>, values: &[Value]| {
-            let value = &parameter.column.cells[row];
-            values.iter().position(|known| known == value).unwrap_or(0)
+        let index = |(parameter, values): &(Parameter<'_>, Vec<Value>)| {
+            values.iter().position(|known| *known == parameter.column.cells[row]).unwrap_or(0)
         };
-        match &self.lines {
-            Lines::One => (0, Series::nth(0)),
-            Lines::Single(parameter, values) => {
-                let number = index(parameter, values);
-                (number, single(number, values.len()))
-            }
-            Lines::Two([first, second], [colours, dashes]) => {
-                let (colour, dash) = (index(first, colours), index(second, dashes));
-                let series = Series::of_values((colour, colours.len()), dash);
-                (colour * dashes.len() + dash, series)
-            }
-            Lines::Combined(_, groups) => {
-                let number = groups.iter().position(|group| group.rows.contains(&row)).unwrap_or(0);
-                (number, Series::nth(number))
-            }
+        let colour = self.lines.first().map_or(0, index);
+        let dash = self.lines.get(1).map_or(0, index);
+        let dashes = self.lines.get(1).map_or(1, |(_, values)| values.len());
+        (colour * dashes + dash, self.style(colour, dash))
+    }
+
+    /// Some rows by line, in the order of the lines.
+    pub fn rows_by_line(&self, rows: &[usize]) -> BTreeMap<usize, (Series, Vec<usize>)> {
+        let mut lines: BTreeMap<usize, (Series, Vec<usize>)> = BTreeMap::new();
+        for row in rows {
+            let (index, series) = self.line(*row);
+            lines.entry(index).or_insert((series, Vec::new())).1.push(*row);
         }
+        lines
     }
 
     /// The legends of the lines; with `points` the samples are markers without lines.
     pub fn legends(&self, points: bool) -> Vec<Legend> {
-        let sample = |series| if points { Sample::Point(series) } else { Sample::Line(series) };
-        match &self.lines {
-            Lines::One => Vec::new(),
-            Lines::Single(parameter, values) => {
-                let entry = |(number, value): (usize, &Value)| {
-                    (sample(single(number, values.len())), parameter.text(value))
-                };
-                let entries = values.iter().enumerate().map(entry).collect();
-                vec![Legend { heading: names::capital(&parameter.heading()), entries }]
-            }
-            Lines::Two([first, second], [colours, dashes]) => {
-                let colour = |(number, value): (usize, &Value)| {
-                    let series = Series::of_values((number, colours.len()), 0);
-                    (sample(series), first.text(value))
-                };
-                let dash = |(number, value): (usize, &Value)| {
-                    (Sample::Line(Series::dashes_only(number)), second.text(value))
-                };
-                vec![
-                    Legend {
-                        heading: format!("Colour and marker: {}", first.heading()),
-                        entries: colours.iter().enumerate().map(colour).collect(),
-                    },
-                    Legend {
-                        heading: format!("Line: {}", second.heading()),
-                        entries: dashes.iter().enumerate().map(dash).collect(),
-                    },
-                ]
-            }
-            Lines::Combined(parameters, groups) => {
-                let entry = |(number, group): (usize, &Group)| {
-                    (sample(Series::nth(number)), group.values.clone())
-                };
-                let entries = groups.iter().enumerate().map(entry).collect();
-                vec![Legend { heading: names::capital(&parameters::heading(parameters)), entries }]
-            }
-        }
+        let legend = |(place, (parameter, values)): (usize, &(Parameter<'_>, Vec<Value>))| {
+            let heading = match (self.lines.len(), place) {
+                (1, _) => names::capital(&parameter.heading()),
+                (_, 0) => format!("Colour and marker: {}", parameter.heading()),
+                _ => format!("Line: {}", parameter.heading()),
+            };
+            let sample = |number: usize| match place {
+                0 if points => Sample::Point(self.style(number, 0)),
+                0 => Sample::Line(self.style(number, 0)),
+                _ => Sample::Line(Series::dashes_only(number)),
+            };
+            let entry = |(number, value)| (sample(number), parameter.text(value));
+            Legend { heading, entries: values.iter().enumerate().map(entry).collect() }
+        };
+        self.lines.iter().enumerate().map(legend).collect()
     }
-}
-
-/// The style of a value of the only parameter of the lines.
-fn single(number: usize, count: usize) -> Series {
-    if count <= PREFERRED_LINES {
-        Series::nth(number)
-    } else {
-        Series::of_values((number, count), 0)
-    }
-}
-
-impl<'a> Lines<'a> {
-    fn new(parameters: Vec<Parameter<'a>>, rows: &[usize], points: bool) -> Self {
-        let values: Vec<Vec<Value>> = parameters.iter().map(|p| p.values(rows)).collect();
-        match (parameters.as_slice(), values.as_slice()) {
-            ([], _) => Self::One,
-            ([parameter], [values]) if values.len() <= MAX_COLOURS => {
-                Self::Single(parameter.clone(), values.clone())
-            }
-            ([first, second], [colours, dashes])
-                if !points && colours.len() <= MAX_COLOURS && dashes.len() <= MAX_DASHES =>
-            {
-                Self::Two([first.clone(), second.clone()], [colours.clone(), dashes.clone()])
-            }
-            _ => {
-                let groups = parameters::groups(&parameters, rows);
-                Self::Combined(parameters, groups)
-            }
-        }
-    }
-
-    fn parameters(&self) -> &[Parameter<'a>] {
-        match self {
-            Self::One => &[],
-            Self::Single(parameter, _) => std::slice::from_ref(parameter),
-            Self::Two(parameters, _) => parameters,
-            Self::Combined(parameters, _) => parameters,
-        }
-    }
-
-    fn count(&self) -> usize {
-        match self {
-            Self::One => 1,
-            Self::Single(_, values) => values.len(),
-            Self::Two(_, [colours, dashes]) => colours.len() * dashes.len(),
-            Self::Combined(_, groups) => groups.len(),
-        }
-    }
-}
-
-/// Parameters that give lines, and parameters that give panels.
-fn divided<'a>(
-    source: &Source<'a>,
-    mut others: Vec<Parameter<'a>>,
-    preferred: usize,
-) -> (Vec<Parameter<'a>>, Vec<Parameter<'a>>) {
-    let counts = |others: &[Parameter<'a>]| -> Vec<usize> {
-        others.iter().map(|parameter| parameter.values(&source.rows).len()).collect()
-    };
-    let found = counts(&others);
-    let colour = found
-        .iter()
-        .position(|count| *count <= PREFERRED_COLOURS)
-        .or_else(|| found.iter().position(|count| *count <= MAX_LINES));
-    let Some(colour) = colour else { return (Vec::new(), others) };
-    let mut lines = vec![others.remove(colour)];
-    let fits = |count: &usize| *count <= MAX_DASHES && found[colour] * count <= preferred;
-    if let Some(dashes) = counts(&others).iter().position(fits) {
-        lines.push(others.remove(dashes));
-    }
-    (lines, others)
 }

@@ -6,8 +6,7 @@ use super::{Source, number};
 use crate::input::value::{Value, short_number};
 use crate::job::result_limit::{Condition, ResultLimit};
 use crate::job::row::DerivedColumn;
-use crate::render::figure::plot::Direction;
-use crate::render::figure::plot::Rule;
+use crate::render::figure::plot::{Direction, Rule};
 use crate::render::figure::ticks::minus;
 use crate::render::figure::unit::Unit;
 use crate::store::table::{Column, Table, row_column_name};
@@ -35,15 +34,14 @@ impl<'a> Source<'a> {
     /// The bound of a measure; that of a margin is 0.
     pub(super) fn bound(&self, measure: &Column) -> Option<Bound> {
         let name = row_column_name(&measure.name);
-        let value = 0.0;
+        let margin =
+            |or_equal, text| Bound { value: 0.0, above: true, or_equal, text, margin: true };
         if name == DerivedColumn::SmallestMargin.name() {
-            let text = "every limit is met".to_owned();
-            return Some(Bound { value, above: true, or_equal: None, text, margin: true });
+            return Some(margin(None, "every limit is met".to_owned()));
         }
         if let Some(limit) = self.limits.iter().find(|limit| limit.column_name() == name) {
             let strict = matches!(limit.condition, Condition::Bound { or_equal: false, .. });
-            let (or_equal, text) = (Some(!strict), limit.to_string());
-            return Some(Bound { value, above: true, or_equal, text, margin: true });
+            return Some(margin(Some(!strict), limit.to_string()));
         }
         let limit = self.limits.iter().find(|limit| limit.measure.name() == name)?;
         let Condition::Bound { bound, above, or_equal } = limit.condition else { return None };
@@ -61,19 +59,6 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// Whether a run of a row is not safe although its smallest margin is 0: it lies at a bound that is not
-    /// allowed.
-    fn misses_at_bound(&self, row: usize) -> bool {
-        let (table, rows) = self.judged_rows(row);
-        let cell = |name: DerivedColumn, row: usize| {
-            table.column(name.name()).map_or(&Value::Null, |column| &column.cells[row])
-        };
-        rows.iter().any(|row| {
-            number(cell(DerivedColumn::SmallestMargin, *row)) == Some(0.0)
-                && *cell(DerivedColumn::Safe, *row) == Value::Bool(false)
-        })
-    }
-
     /// The table of the single runs, and the runs of a row.
     fn judged_rows(&self, row: usize) -> (&'a Table, Vec<usize>) {
         match (self.runs, self.runs_of(row)) {
@@ -86,13 +71,22 @@ impl<'a> Source<'a> {
 impl Bound {
     /// Whether a row with this value (SI) misses the limit.
     pub fn is_missed(&self, source: &Source<'_>, row: usize, value: f64) -> bool {
-        match value.partial_cmp(&self.value) {
-            Some(Ordering::Less) => self.above,
-            Some(Ordering::Greater) => !self.above,
-            Some(Ordering::Equal) => {
-                self.or_equal.map_or_else(|| source.misses_at_bound(row), |allowed| !allowed)
+        match (value.partial_cmp(&self.value), self.or_equal) {
+            (Some(Ordering::Less), _) => self.above,
+            (Some(Ordering::Greater), _) => !self.above,
+            (Some(Ordering::Equal), Some(allowed)) => !allowed,
+            // A run with a smallest margin of 0 that is not safe lies at a bound that is not allowed.
+            (Some(Ordering::Equal), None) => {
+                let (table, rows) = source.judged_rows(row);
+                let cell = |name: DerivedColumn, row: usize| {
+                    table.column(name.name()).map_or(&Value::Null, |column| &column.cells[row])
+                };
+                rows.iter().any(|row| {
+                    number(cell(DerivedColumn::SmallestMargin, *row)) == Some(0.0)
+                        && *cell(DerivedColumn::Safe, *row) == Value::Bool(false)
+                })
             }
-            None => true,
+            (None, _) => true,
         }
     }
 
@@ -107,8 +101,8 @@ impl Bound {
 
     /// A note on margins that are not distances.
     pub fn note(&self, source: &Source<'_>) -> Option<String> {
-        let word = |limit: &&ResultLimit| matches!(limit.condition, Condition::Is(_));
-        let words = source.limits.iter().filter(word);
+        let words =
+            source.limits.iter().filter(|limit| matches!(limit.condition, Condition::Is(_)));
         let names: Vec<&str> = words.map(|limit| limit.measure.name()).collect();
         (self.margin && !names.is_empty()).then(|| {
             format!("The margin of {} is 1 if the limit is met, −1 if not.", names.join(", "))
@@ -135,11 +129,7 @@ impl Bound {
         let value = unit.shown(self.value);
         // Zero is an end of the axis where it is near.
         let span = high - low.min(0.0).min(high);
-        if low > high {
-            return ([value, value], None);
-        }
-        let distance = (low - value).max(value - high);
-        if distance <= MAX_DISTANCE * span {
+        if (low - value).max(value - high) <= MAX_DISTANCE * span {
             return ([low.min(value), high.max(value)], None);
         }
         let side = if value > high { "above" } else { "below" };

@@ -184,7 +184,7 @@ impl<'a> Quantity<'a> {
     fn scale(&self, source: &Source<'_>) -> (String, Option<(String, [f64; 2])>) {
         match self {
             Self::Measure(column, unit, _) => {
-                let name = Name::of_measure(&column.name, &column.meaning);
+                let name = Name::of_quantity(&column.name, &column.meaning);
                 let values = source.rows.iter();
                 let values = values.filter_map(|row| outcome::value(source, column, *row));
                 let range = values.map(|value| [unit.shown(value); 2]);

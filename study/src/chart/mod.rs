@@ -20,18 +20,17 @@ use self::runs::Replicated;
 pub mod borders;
 mod encoding;
 pub mod history;
+pub mod kinds;
 mod limits;
 pub mod map;
 mod names;
 mod outcome;
 pub mod over;
 pub mod parameters;
-pub mod pareto;
 mod positions;
 pub mod runs;
-mod searched;
-pub mod standard;
 mod time_axis;
+pub mod work_precision;
 
 /// The rows of a chart.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,26 +1,6 @@
-//! Plain names of quantities, for titles and axes: "height of the top ring" for `z_rim`.
+//! Plain names of quantities, for titles and axes: "peak velocity of the top ring" for `peak_vz`.
 
 use crate::render::figure::unit::Unit;
-
-/// Plain names of history columns and tracks.
-const HISTORY: &[(&str, &str)] = &[
-    ("z_centre", "height of the top centre"),
-    ("z_rim", "height of the top ring"),
-    ("z_max", "height of the highest node"),
-    ("vz", "velocity of the top ring"),
-    ("vz_centre", "velocity of the top centre"),
-    ("volume", "enclosed volume"),
-    ("pressure", "gas pressure"),
-    ("temperature", "gas temperature"),
-    ("gas_mass", "mass of the gas"),
-    ("lid_force", "force on the lid"),
-    ("kinetic_energy", "kinetic energy of the film"),
-    ("strain_energy", "strain energy of the film"),
-    ("contact_energy", "energy of contact"),
-    ("gas_work", "work of the gas"),
-    ("smallest_gap", "smallest gap between film and film"),
-    ("interlayer_pressure", "largest pressure of film on film"),
-];
 
 /// Plain names of measures, the columns of the table.
 const MEASURES: &[(&str, &str)] = &[
@@ -66,14 +46,19 @@ pub struct Name {
 }
 
 impl Name {
-    /// The name of a history column or a track. Without a plain name its `meaning` stands for it.
-    pub fn of_history(name: &str, meaning: &str) -> Self {
-        Self::found(HISTORY, name).unwrap_or_else(|| Self::of_meaning(name, meaning))
-    }
-
-    /// The name of a measure, in the same way.
-    pub fn of_measure(name: &str, meaning: &str) -> Self {
-        Self::found(MEASURES, name).unwrap_or_else(|| Self::of_meaning(name, meaning))
+    /// The name of a history column, or of a measure. Without a plain name its `meaning` up to the first comma stands
+    /// for it; the name alone if that is long.
+    pub fn of_quantity(name: &str, meaning: &str) -> Self {
+        /// Most characters of a plain name. Chosen: with symbol and unit it fits along an axis.
+        const LONGEST: usize = 44;
+        Self::found(MEASURES, name).unwrap_or_else(|| {
+            match meaning.split([',', ';', ':', '(']).next().unwrap_or_default().trim() {
+                short if short.is_empty() || short.chars().count() > LONGEST => {
+                    Self { plain: name.to_owned(), symbol: String::new() }
+                }
+                short => Self::new(short, name),
+            }
+        })
     }
 
     /// The name of a parameter, from its name or path.
@@ -84,23 +69,15 @@ impl Name {
     }
 
     fn found(names: &[(&str, &str)], name: &str) -> Option<Self> {
-        let plain = names.iter().find(|(known, _)| *known == name)?.1;
-        // A symbol that the plain name shows is not repeated.
-        let words = name.replace('_', " ");
-        let shown = plain.contains('α') || (name.len() > 1 && plain.contains(&words));
-        let symbol = if shown { "" } else { name };
-        Some(Self { plain: plain.to_owned(), symbol: symbol.to_owned() })
+        Some(Self::new(names.iter().find(|(known, _)| *known == name)?.1, name))
     }
 
-    /// A meaning up to its first comma or semicolon; the name alone if it is long.
-    fn of_meaning(name: &str, meaning: &str) -> Self {
-        /// Most characters of a plain name. Chosen: with symbol and unit it fits along an axis.
-        const LONGEST: usize = 44;
-        let short = meaning.split([',', ';', ':', '(']).next().unwrap_or_default().trim();
-        if short.is_empty() || short.chars().count() > LONGEST {
-            return Self { plain: name.to_owned(), symbol: String::new() };
-        }
-        Self { plain: short.to_owned(), symbol: name.to_owned() }
+    /// A plain name and a symbol; a symbol that the plain name shows is not repeated.
+    fn new(plain: &str, name: &str) -> Self {
+        let shown = plain.contains('α')
+            || (name.len() > 1 && plain.to_lowercase().contains(&name.replace('_', " ")));
+        let symbol = if shown { "" } else { name };
+        Self { plain: plain.to_owned(), symbol: symbol.to_owned() }
     }
 
     /// The label of an axis: plain name, symbol, unit.
@@ -138,22 +115,27 @@ mod tests {
     #[test]
     fn labels_have_name_symbol_and_unit() {
         let metre = Unit::of("m", 1.0);
-        let label = |name: &Name, unit: &Unit| name.label(unit);
-        assert_eq!(
-            label(&Name::of_history("z_rim", ""), &metre),
-            "Height of the top ring z_rim (m)"
-        );
-        assert_eq!(Name::of_history("pressure", "").with_symbol(), "gas pressure");
-        assert_eq!(Name::of_parameter("strategy").with_symbol(), "inflation strategy");
         let flow = Unit::of("kg/s", 0.005);
-        assert_eq!(label(&Name::of_parameter("gas.mass_flow_rate"), &flow), "Mass flow rate (g/s)");
-        assert_eq!(label(&Name::of_parameter("N"), &Unit::si("1")), "Number of panels N");
+        let quantity = Name::of_quantity;
+        for (name, unit, label) in [
+            (
+                quantity("z_rim", "mean height of the top ring"),
+                &metre,
+                "Mean height of the top ring z_rim (m)",
+            ),
+            (quantity("pressure", "gas pressure"), &Unit::si("Pa"), "Gas pressure (Pa)"),
+            (
+                quantity("new_one", "largest of all, at a sample"),
+                &metre,
+                "Largest of all new_one (m)",
+            ),
+            (quantity("new_one", &"long ".repeat(20)), &metre, "new_one (m)"),
+            (Name::of_parameter("strategy"), &Unit::si("1"), "Inflation strategy"),
+            (Name::of_parameter("gas.mass_flow_rate"), &flow, "Mass flow rate (g/s)"),
+            (Name::of_parameter("N"), &Unit::si("1"), "Number of panels N"),
+        ] {
+            assert_eq!(name.label(unit), label);
+        }
         assert_eq!(Name::of_parameter("N").before_value(), "N");
-        assert_eq!(
-            Name::of_measure("new_one", "largest of all, at a sample").with_symbol(),
-            "largest of all new_one"
-        );
-        assert_eq!(Name::of_measure("new_one", &"long ".repeat(20)).plain, "new_one");
-        assert_eq!(label(&Name::of_measure("new_one", &"long ".repeat(20)), &metre), "new_one (m)");
     }
 }

@@ -1,4 +1,4 @@
-//! The outcome of a job in a chart: a marker if it has a value, a letter if not.
+//! How the job of a point ended, in a chart: a marker if it has a value, a letter if not.
 
 use std::collections::BTreeMap;
 
@@ -16,61 +16,29 @@ use crate::store::table::Column;
 /// Legend text of a done job without a value: the event that the measure describes did not occur.
 const NOT_OCCURRED: &str = "done, event did not occur";
 
-/// What a marker says of a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Outcome {
-    /// The verdict of its job.
-    Verdict(Option<Verdict>),
-    /// Each of its runs deployed.
-    All,
-    /// Some of its runs deployed.
-    Mixed,
-    /// None of its runs deployed.
-    None,
-}
-
-/// Every outcome with a marker, the best one first.
-pub const OUTCOMES: [Outcome; 7] = [
-    Outcome::All,
-    Outcome::Mixed,
-    Outcome::None,
-    Outcome::Verdict(Some(Verdict::Deployed)),
-    Outcome::Verdict(Some(Verdict::Partial)),
-    Outcome::Verdict(Some(Verdict::Stalled)),
-    Outcome::Verdict(None),
+/// The markers of points with a value, and their names in a legend: of several runs, then of one run.
+pub const MARKERS: [(Fill, &str); 7] = [
+    (Fill::Filled, "all runs deployed"),
+    (Fill::Half, "k/n: k of n runs deployed"),
+    (Fill::Crossed, "no run deployed"),
+    (Fill::Filled, "deployed"),
+    (Fill::Open, "partial"),
+    (Fill::Crossed, "stalled"),
+    (Fill::Filled, "done, no verdict"),
 ];
 
-impl Outcome {
-    /// The outcome of a row.
-    pub fn of(source: &Source<'_>, row: usize) -> Self {
-        let runs = source.runs_of(row).filter(|_| source.has_replicates());
-        match runs.map(|runs| runs.deployed) {
-            None => Self::Verdict(verdict(source, row)),
-            Some(Proportion { of: 0, .. }) => Self::Verdict(None),
-            Some(deployed) if deployed.is_mixed() => Self::Mixed,
-            Some(Proportion { met: 0, .. }) => Self::None,
-            Some(_) => Self::All,
-        }
-    }
-
-    /// Its marker.
-    pub fn fill(self) -> Fill {
-        match self {
-            Self::Verdict(verdict) => fill(verdict),
-            Self::All => Fill::Filled,
-            Self::Mixed => Fill::Half,
-            Self::None => Fill::Crossed,
-        }
-    }
-
-    /// Its name in a legend.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Verdict(verdict) => verdict.map_or("done, no verdict", Verdict::name),
-            Self::All => "all runs deployed",
-            Self::Mixed => "k/n: k of n runs deployed",
-            Self::None => "no run deployed",
-        }
+/// The marker of a row, as an index of [`MARKERS`].
+pub fn marker(source: &Source<'_>, row: usize) -> usize {
+    match source.runs_of(row).filter(|_| source.has_replicates()).map(|runs| runs.deployed) {
+        None => match verdict(source, row) {
+            Some(Verdict::Deployed) => 3,
+            Some(Verdict::Partial) => 4,
+            Some(Verdict::Stalled) => 5,
+            None => 6,
+        },
+        Some(Proportion { of: 0, .. }) => 6,
+        Some(Proportion { met: 0, .. }) => 2,
+        Some(deployed) => usize::from(deployed.is_mixed()),
     }
 }
 
@@ -86,7 +54,7 @@ pub fn mixed_text(source: &Source<'_>, row: usize) -> String {
 pub struct Outcomes<'a> {
     source: &'a Source<'a>,
     letters: BTreeMap<String, String>,
-    marked: Vec<(Outcome, usize)>,
+    marked: [usize; MARKERS.len()],
     lettered: BTreeMap<String, usize>,
 }
 
@@ -98,28 +66,25 @@ impl<'a> Outcomes<'a> {
         // Pending comes first, so that its letter is always P.
         kinds.sort_by_key(|kind| (*kind != Status::Pending.name(), *kind));
         kinds.dedup();
-        let mut letters: BTreeMap<String, String> = BTreeMap::new();
         // A letter I looks like a line; infeasible has the sign of the empty set.
-        letters.insert(NOT_OCCURRED.to_owned(), "–".to_owned());
-        letters.insert(Status::Infeasible.name().to_owned(), "∅".to_owned());
+        let fixed = [(NOT_OCCURRED, "–"), (Status::Infeasible.name(), "∅")];
+        let mut letters: BTreeMap<String, String> =
+            fixed.map(|(kind, letter)| (kind.to_owned(), letter.to_owned())).into();
         for kind in kinds {
             let free = |letter: &char| !letters.values().any(|used| used.starts_with(*letter));
-            let letters_of_name =
-                kind.chars().filter(char::is_ascii_alphabetic).map(|c| c.to_ascii_uppercase());
-            let letter = letters_of_name.chain('A'..='Z').find(free).unwrap_or('?');
+            let of_name = kind.chars().filter(char::is_ascii_alphabetic);
+            let of_name = of_name.map(|letter| letter.to_ascii_uppercase());
+            let letter = of_name.chain('A'..='Z').find(free).unwrap_or('?');
             letters.insert(kind.to_owned(), letter.to_string());
         }
-        Self { source, letters, marked: Vec::new(), lettered: BTreeMap::new() }
+        Self { source, letters, marked: [0; MARKERS.len()], lettered: BTreeMap::new() }
     }
 
     /// The marker of a job that is done, with a value.
     pub fn mark(&mut self, row: usize) -> Fill {
-        let outcome = Outcome::of(self.source, row);
-        match self.marked.iter_mut().find(|(known, _)| *known == outcome) {
-            Some((_, count)) => *count += 1,
-            None => self.marked.push((outcome, 1)),
-        }
-        outcome.fill()
+        let marker = marker(self.source, row);
+        self.marked[marker] += 1;
+        MARKERS[marker].0
     }
 
     /// The letter of a job without a value.
@@ -132,39 +97,19 @@ impl<'a> Outcomes<'a> {
 
     /// The legend of the markers and letters in use. With `cells` the letters stand in cells, as in a map.
     pub fn legend(&self, cells: bool) -> Legend {
-        let marked = OUTCOMES
-            .into_iter()
-            .filter_map(|outcome| self.marked.iter().find(|(known, _)| *known == outcome));
-        let marks = marked.map(|(outcome, count)| {
-            (Sample::Marker(outcome.fill()), format!("{} ({count})", outcome.name()))
-        });
+        let marked = MARKERS.iter().zip(self.marked).filter(|(_, count)| *count > 0);
+        let marks = marked
+            .map(|((fill, name), count)| (Sample::Marker(*fill), format!("{name} ({count})")));
         let letters = self.lettered.iter().map(|(kind, count)| {
             let letter = self.letters.get(kind).cloned().unwrap_or_default();
-            let text = if Status::from_name(kind).is_some_and(Status::is_failure) {
-                format!("failed: {kind} ({count})")
-            } else {
-                format!("{kind} ({count})")
-            };
+            let failed = Status::from_name(kind).is_some_and(Status::is_failure);
+            let text = format!("{}{kind} ({count})", if failed { "failed: " } else { "" });
             let sample =
                 if cells { Sample::Cell(Cell::letter(letter)) } else { Sample::Letter(letter) };
             (sample, text)
         });
-        Legend {
-            heading: "Outcome (number of points)".to_owned(),
-            entries: marks.chain(letters).collect(),
-        }
-    }
-}
-
-/// Every verdict, the best one first.
-const VERDICTS: [Verdict; 3] = [Verdict::Deployed, Verdict::Partial, Verdict::Stalled];
-
-/// The marker of a verdict.
-pub fn fill(verdict: Option<Verdict>) -> Fill {
-    match verdict {
-        None | Some(Verdict::Deployed) => Fill::Filled,
-        Some(Verdict::Partial) => Fill::Open,
-        Some(Verdict::Stalled) => Fill::Crossed,
+        let heading = "Outcome (number of points)".to_owned();
+        Legend { heading, entries: marks.chain(letters).collect() }
     }
 }
 
@@ -188,13 +133,9 @@ pub fn status<'a>(source: &Source<'a>, row: usize) -> &'a str {
     text(source, "status", row)
 }
 
-/// Whether the job of a row failed.
-pub fn has_failed(source: &Source<'_>, row: usize) -> bool {
-    source.table.status(row).is_some_and(Status::is_failure)
-}
-
 /// The verdict of a row.
 pub fn verdict(source: &Source<'_>, row: usize) -> Option<Verdict> {
     let name = text(source, "verdict", row);
-    VERDICTS.into_iter().find(|verdict| verdict.name() == name)
+    let all = [Verdict::Deployed, Verdict::Partial, Verdict::Stalled];
+    all.into_iter().find(|verdict| verdict.name() == name)
 }

@@ -194,67 +194,37 @@ fn determines(cause: Option<&Column>, effect: &Column, rows: &[usize]) -> bool {
     })
 }
 
-/// Rows with equal values of some parameters.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Group {
-    /// The values: "5, 1 g/s".
-    pub values: String,
-    /// Names and values: `N 5, mass_flow_rate 1 g/s`.
-    pub named: String,
-    /// The rows.
-    pub rows: Vec<usize>,
-}
-
-/// Rows grouped by the values of some parameters, in order of value, the first parameter outermost.
-pub fn groups(parameters: &[Parameter<'_>], rows: &[usize]) -> Vec<Group> {
-    let orders: Vec<Vec<Value>> =
-        parameters.iter().map(|parameter| parameter.values(rows)).collect();
-    let key = |row: usize| -> Vec<usize> {
-        let pairs = parameters.iter().zip(&orders);
-        pairs
-            .map(|(parameter, order)| {
-                let value = &parameter.column.cells[row];
-                order.iter().position(|known| known == value).unwrap_or(usize::MAX)
-            })
-            .collect()
-    };
-    let mut keyed: Vec<(Vec<usize>, usize)> = rows.iter().map(|row| (key(*row), *row)).collect();
-    keyed.sort();
-    keyed
-        .chunk_by(|a, b| a.0 == b.0)
-        .map(|group| {
-            let row = group[0].1;
-            let texts: Vec<String> =
-                parameters.iter().map(|parameter| parameter.of_row(row)).collect();
-            let named: Vec<String> =
-                parameters.iter().map(|parameter| parameter.named(row)).collect();
-            Group {
-                values: texts.join(", "),
-                named: named.join(", "),
-                rows: group.iter().map(|(_, row)| *row).collect(),
-            }
-        })
-        .collect()
-}
-
 /// Rows by panel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Facets<'a> {
-    /// Titles and rows of the panels. A title names every parameter of the panels.
+    /// Titles and rows of the panels. A title names every parameter of the panels: `N 5, mass_flow_rate 1 g/s`.
     pub panels: Vec<(String, Vec<usize>)>,
     /// The parameters.
     pub parameters: Vec<Parameter<'a>>,
 }
 
-/// One panel per combination of some parameters.
+/// One panel per combination of some parameters, in order of value, the first parameter outermost.
 pub fn facets<'a>(parameters: Vec<Parameter<'a>>, rows: &[usize]) -> Facets<'a> {
-    let groups = groups(&parameters, rows);
-    let mut panels: Vec<(String, Vec<usize>)> =
-        groups.into_iter().map(|group| (group.named, group.rows)).collect();
-    if panels.is_empty() {
-        // A figure without points says so in an empty panel.
-        panels.push((String::new(), Vec::new()));
+    let orders: Vec<Vec<Value>> =
+        parameters.iter().map(|parameter| parameter.values(rows)).collect();
+    let mut by_key: BTreeMap<Vec<usize>, Vec<usize>> = BTreeMap::new();
+    for row in rows {
+        let place = |(parameter, order): (&Parameter<'_>, &Vec<Value>)| {
+            let value = &parameter.column.cells[*row];
+            order.iter().position(|known| known == value).unwrap_or(usize::MAX)
+        };
+        let key = parameters.iter().zip(&orders).map(place).collect();
+        by_key.entry(key).or_default().push(*row);
     }
+    if by_key.is_empty() {
+        // A figure without points says so in an empty panel.
+        by_key.insert(Vec::new(), Vec::new());
+    }
+    let title = |rows: &[usize]| {
+        let names = rows.first().map(|row| parameters.iter().map(|p| p.named(*row)));
+        names.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    };
+    let panels = by_key.into_values().map(|rows| (title(&rows), rows)).collect();
     Facets { panels, parameters }
 }
 
@@ -271,11 +241,6 @@ pub fn fix_seeds(names: &[&str]) -> &'static str {
     }
     "; to have runs that differ in seed alone as a median with a range, write seed under replicates instead of grid, \
      then `billow run`, which computes no job again (and leave out --runs)"
-}
-
-/// Names of parameters, as a heading.
-pub fn heading(parameters: &[Parameter<'_>]) -> String {
-    parameters.iter().map(Parameter::heading).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]

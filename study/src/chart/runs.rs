@@ -66,17 +66,11 @@ impl<'a> Source<'a> {
             let has_error = |row: &&usize| self.mesh_error(measure, **row).is_some();
             self.rows.iter().filter(has_error).any(|row| reasons.cells[*row] != Value::Null)
         });
-        let meaning = if outside {
-            format!(
-                "{meaning}; where the table does not cover a point, 3 times the change between its meshes"
-            )
-        } else {
-            meaning.to_owned()
-        };
-        has_error.then(|| Legend {
-            heading: "Mesh error".to_owned(),
-            entries: vec![(Sample::Error, meaning)],
-        })
+        let other =
+            "; where the table does not cover a point, 3 times the change between its meshes";
+        let meaning = format!("{meaning}{}", if outside { other } else { "" });
+        let entries = vec![(Sample::Error, meaning)];
+        has_error.then(|| Legend { heading: "Mesh error".to_owned(), entries })
     }
 
     /// The single runs of the chart; of several meshes those on the finest one.
@@ -118,19 +112,14 @@ impl<'a> Source<'a> {
         let Some(Replicated { condensed, single, .. }) = self.runs else { return Vec::new() };
         let all = || self.rows.iter().map(|row| &condensed.runs[*row]);
         let sum = |count: fn(&Runs) -> usize| all().map(count).sum::<usize>();
-        let (failed, pending) =
-            (sum(|runs| runs.failed + runs.infeasible), sum(|runs| runs.pending));
-        let mut texts = Vec::new();
         let not_trusted = sum(|runs| if runs.has_trusted { runs.not_trusted } else { 0 });
-        if not_trusted > 0 {
-            texts.push(format!("{not_trusted} cannot be trusted"));
-        }
-        if failed > 0 {
-            texts.push(format!("{failed} failed or are infeasible"));
-        }
-        if pending > 0 {
-            texts.push(format!("{pending} have not ended"));
-        }
+        let counts = [
+            (not_trusted, "cannot be trusted"),
+            (sum(|runs| runs.failed + runs.infeasible), "failed or are infeasible"),
+            (sum(|runs| runs.pending), "have not ended"),
+        ];
+        let counts = counts.iter().filter(|(count, _)| *count > 0);
+        let texts: Vec<String> = counts.map(|(count, text)| format!("{count} {text}")).collect();
         let mut notes = Vec::new();
         notes.extend(self.meshes_note(measure));
         if !texts.is_empty() {

@@ -88,6 +88,11 @@ impl TimeAxis {
         }
         Ok(Self { ends, unit: Unit::fit("s", ends), note })
     }
+
+    /// Its ends in its unit.
+    pub fn shown(&self) -> [f64; 2] {
+        self.ends.map(|end| self.unit.shown(end))
+    }
 }
 
 /// The end of the axis, s, a round number; `None` if the whole run is shown.

@@ -36,7 +36,6 @@ mod merge;
 mod notes;
 pub mod opened;
 pub mod options;
-mod pareto;
 pub mod picture;
 mod plan;
 mod points;
@@ -109,8 +108,6 @@ pub enum Command {
     Chart(chart::Args),
     /// Write all results of a study into one file that xarray opens.
     Export(export::Args),
-    /// Draw work-precision diagrams: what each model, mesh and step costs, and how large its error is.
-    Pareto(pareto::Args),
     /// List the keys of a study or scene file, with unit, default, range and meaning.
     Keys(keys::Args),
     /// Print the completion script of a shell.
@@ -166,7 +163,6 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
         Command::Borders(args) => borders::run(args, out),
         Command::Chart(args) => chart::run(args, out),
         Command::Export(args) => export::run(args, out),
-        Command::Pareto(args) => pareto::run(args, out),
         Command::Keys(args) => keys::run(args, out),
         Command::Completions(args) => completions::run(args, out),
     }

@@ -125,76 +125,20 @@ fn overlaps(triangles: &[Triangle]) -> Overlaps {
     overlaps
 }
 
-/// Cells of the page, each about as large as a triangle.
-struct Grid {
-    low: Position,
-    high: Position,
-    /// Number of columns and rows.
-    size: [f64; 2],
-}
-
-impl Grid {
-    /// Most columns or rows, so that the memory of a grid is bounded.
-    const MAX_SIZE: f64 = 1024.0;
-
-    fn new(bounds: &[[Position; 2]]) -> Self {
-        let count = bounds.len().max(1) as f64;
-        let low =
-            [0, 1].map(|axis| bounds.iter().map(|b| b[0][axis]).fold(f64::INFINITY, f64::min));
-        let high =
-            [0, 1].map(|axis| bounds.iter().map(|b| b[1][axis]).fold(f64::NEG_INFINITY, f64::max));
-        let size = [0, 1].map(|axis| {
-            let mean = bounds.iter().map(|b| b[1][axis] - b[0][axis]).sum::<f64>() / count;
-            ((high[axis] - low[axis]) / mean).clamp(1.0, Self::MAX_SIZE).floor()
-        });
-        Self { low, high, size }
-    }
-
-    /// Column and row of a position.
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1023")]
-    fn cell(&self, position: Position) -> [usize; 2] {
-        [0, 1].map(|axis| {
-            let extent = (self.high[axis] - self.low[axis]).max(f64::MIN_POSITIVE);
-            let fraction = (position[axis] - self.low[axis]) / extent;
-            (fraction * self.size[axis]).clamp(0.0, self.size[axis] - 1.0) as usize
-        })
-    }
-
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 1024")]
-    fn columns_and_rows(&self) -> [usize; 2] {
-        self.size.map(|number| number as usize)
-    }
-}
-
 /// Calls `call` once for each pair of triangles with overlapping bounds, the smaller index first. Triangles
 /// without an area on the page are ignored.
 fn for_each_near_pair(triangles: &[Triangle], mut call: impl FnMut(usize, usize)) {
     let bounds: Vec<[Position; 2]> = triangles.iter().map(Triangle::bounds).collect();
-    let grid = Grid::new(&bounds);
-    let [columns, rows] = grid.columns_and_rows();
-    let mut lists: Vec<Vec<usize>> = vec![Vec::new(); columns * rows];
-    for (index, triangle) in triangles.iter().enumerate() {
-        if triangle.signed_double_area() == 0.0 {
-            continue;
-        }
-        let [first, last] = bounds[index].map(|corner| grid.cell(corner));
-        for row in first[1]..=last[1] {
-            for column in first[0]..=last[0] {
-                lists[row * columns + column].push(index);
-            }
-        }
-    }
-    for (cell, list) in lists.iter().enumerate() {
-        for (position, a) in list.iter().enumerate() {
-            for b in &list[position + 1..] {
-                let (of_a, of_b) = (bounds[*a], bounds[*b]);
-                let low = [0, 1].map(|axis| of_a[0][axis].max(of_b[0][axis]));
-                let apart = (0..2).any(|axis| low[axis] >= of_a[1][axis].min(of_b[1][axis]));
-                // A pair may share several cells: only the cell of its common lower corner counts.
-                let [column, row] = grid.cell(low);
-                if !apart && row * columns + column == cell {
-                    call(*a, *b);
-                }
+    let has_area = |index: &usize| triangles[*index].signed_double_area() != 0.0;
+    let mut from_left: Vec<usize> = (0..triangles.len()).filter(has_area).collect();
+    from_left.sort_by(|a, b| bounds[*a][0][0].total_cmp(&bounds[*b][0][0]));
+    for (place, a) in from_left.iter().enumerate() {
+        let [[_, bottom], [right, top]] = bounds[*a];
+        let reached = |b: &&usize| bounds[**b][0][0] < right;
+        for b in from_left[place + 1..].iter().take_while(reached) {
+            let [[_, low], [_, high]] = bounds[*b];
+            if low < top && bottom < high {
+                call(*a.min(b), *a.max(b));
             }
         }
     }

@@ -155,25 +155,5 @@ mod tests {
                 prop_assert!(close(facet.corners[0], view.project(corners[0])));
             }
         }
-
-        #[test]
-        fn separate_elements_are_drawn_from_far_to_near(
-            depths in prop::collection::vec(-5.0_f32..5.0, 1..40), azimuth in -4.0..4.0_f64,
-        ) {
-            let view = View::new(azimuth, 0.4);
-            let point = |depth: f32, right: f64, up: f64| {
-                let point = f64::from(depth) * view.eye + right * view.right + up * view.up;
-                #[expect(clippy::cast_possible_truncation, reason = "frames store f32")]
-                [point.x as f32, point.y as f32, point.z as f32]
-            };
-            let triangle = |depth: &f32| {
-                [point(*depth, 0.0, 0.0), point(*depth, 1.0, 0.0), point(*depth, 0.0, 1.0)]
-            };
-            let (triangles, frame) = separate(&depths.iter().map(triangle).collect::<Vec<_>>());
-            let facets = view.facets(&triangles, &frame);
-            prop_assert_eq!(facets.len(), depths.len());
-            let drawn: Vec<f32> = facets.iter().map(|facet| depths[facet.element]).collect();
-            prop_assert!(drawn.windows(2).all(|pair| pair[0] <= pair[1] + 1e-5));
-        }
     }
 }

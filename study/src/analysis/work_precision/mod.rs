@@ -26,7 +26,6 @@ mod chains;
 mod course;
 mod front;
 mod largest;
-pub mod peer;
 mod reference;
 pub mod table;
 #[cfg(test)]

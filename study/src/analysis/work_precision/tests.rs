@@ -1,7 +1,6 @@
 use billow_solver::output::outcome::FailureKind;
 
 use super::*;
-use crate::analysis::work_precision::peer::Peer;
 
 /// A quantity with this exact value.
 pub fn quantity(name: &str, exact: Option<f64>) -> Quantity {
@@ -254,29 +253,4 @@ fn on_one_mesh_the_uncertainty_is_that_of_the_step() {
     runs.push(meshless);
     let errors = Diagram::of(scene(None, runs)).quantities.remove(0);
     assert!(errors.uncertainty() > 0.1, "{}", errors.uncertainty());
-}
-
-#[test]
-fn a_peer_stands_at_its_ratio_times_the_measured_seconds() {
-    let text = br#"{"name": "code", "provenance": "measured", "scene": "capsule",
-        "times": [{"model": "film", "subdivisions": 8, "simulated": 0.3, "ratio": [6, 7.5]},
-                  {"model": "film", "subdivisions": 24, "simulated": 0.3, "ratio": [6, 7]}],
-        "measures": [{"name": "t_50_z_rim", "range": [1.8, 2.2], "note": "differs"}]}"#;
-    let peer = Peer::from_text(text).unwrap();
-    let runs = vec![film(4, 0.5, 2.4), film(8, 0.5, 2.1), film(8, 0.25, 2.1)];
-    let mut runs = [runs, vec![film(16, 0.5, 2.0)]].concat();
-    runs.push(piston(2.0));
-    let diagram = Diagram::of(scene(None, runs));
-    let points = peer.points(&diagram);
-    assert_eq!(points.len(), 1, "n 24 was not run");
-    let seconds = 1e-6 * 64.0 * 16_000.0;
-    assert!((points[0].seconds[0] - 6.0 * seconds).abs() < 1e-9);
-    let [low, high] = peer.difference("t_50_z_rim", 2.0).unwrap();
-    assert!(low.abs() < 1e-12 && (high - 0.1).abs() < 1e-12);
-    let [low, high] = peer.difference("t_50_z_rim", 1.5).unwrap();
-    assert!((low - 0.2).abs() < 1e-12 && (high - 0.7 / 1.5).abs() < 1e-12);
-    assert_eq!(peer.difference("peak_vz", 1.0), None);
-    assert!(Peer::from_text(b"{}").is_err());
-    let reversed = String::from_utf8_lossy(text).replace("[6, 7.5]", "[7.5, 6]");
-    assert!(Peer::from_text(reversed.as_bytes()).unwrap_err().contains("ratio"));
 }

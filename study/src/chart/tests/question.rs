@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::analysis::replicates::Condensed;
+use crate::chart::kinds::ChartKind;
 use crate::chart::runs::Replicated;
-use crate::chart::standard::ChartKind;
 use crate::job::result_limit::{Condition, ResultLimit};
 
 fn limits() -> Vec<ResultLimit> {
@@ -63,19 +63,20 @@ fn the_runs_of_a_point_are_a_median_with_a_band_and_a_marker() {
         over::svg(source, "peak_vz", "mass_flow_rate", &[]).unwrap()
     });
     let texts = check::figure(&svg);
-    for text in [
-        "study made_up: 6 points of 4 runs each (seed)",
-        "Inflation strategy",
-        "median, and range from least to largest",
-        "all runs deployed (5)",
-        "k/n: k of n runs deployed (1)",
-        "3/4",
-        "limit 25 m/s",
-        "misses the limit (peak_vz < 25 m/s)",
-        "Of 24 runs 1 failed or are infeasible: medians, ranges and k/n are those of the others.",
-    ] {
-        assert!(contains(&texts, text), "{text}: {texts:?}");
-    }
+    shows(
+        &texts,
+        &[
+            "study made_up: 6 points of 4 runs each (seed)",
+            "Inflation strategy",
+            "median, and range from least to largest",
+            "all runs deployed (5)",
+            "k/n: k of n runs deployed (1)",
+            "3/4",
+            "limit 25 m/s",
+            "misses the limit (peak_vz < 25 m/s)",
+            "Of 24 runs 1 failed or are infeasible: medians, ranges and k/n are those of the others.",
+        ],
+    );
     assert!(!texts.iter().any(|text| text.starts_with("Seed")), "seeds are no panels: {texts:?}");
     let bands = svg.matches("fill-opacity=\"0.2\"").count();
     assert_eq!(bands, 3, "one band per strategy, and the legend");
@@ -84,9 +85,7 @@ fn the_runs_of_a_point_are_a_median_with_a_band_and_a_marker() {
         map::svg(source, "peak_vz", ["mass_flow_rate", "strategy"]).unwrap()
     });
     let texts = check::figure(&svg);
-    for text in ["21.5", "3/4", "27.0", "misses the limit (peak_vz < 25 m/s)"] {
-        assert!(contains(&texts, text), "{text}: {texts:?}");
-    }
+    shows(&texts, &["21.5", "3/4", "27.0", "misses the limit (peak_vz < 25 m/s)"]);
     let over_names =
         condensed(&table, &limits, |source| over::svg(source, "peak_vz", "strategy", &[]).unwrap());
     check::figure(&over_names);
@@ -106,14 +105,15 @@ fn a_margin_has_its_zero_line_and_a_far_limit_a_note() {
         check::figure(&svg)
     };
     let margin = draw("smallest_margin", &limits);
-    for text in [
-        "Smallest margin of the limits over mass flow rate",
-        "limit",
-        "not safe; above 0: every limit is met",
-        "The margin of verdict is 1 if the limit is met, −1 if not.",
-    ] {
-        assert!(contains(&margin, text), "{text}: {margin:?}");
-    }
+    shows(
+        &margin,
+        &[
+            "Smallest margin of the limits over mass flow rate",
+            "limit",
+            "not safe; above 0: every limit is met",
+            "The margin of verdict is 1 if the limit is met, −1 if not.",
+        ],
+    );
     let mut far = limits.clone();
     far[0].condition = Condition::Bound { bound: 2500.0, above: false, or_equal: false };
     let far = draw("peak_vz", &far);
@@ -127,29 +127,26 @@ fn a_map_of_outcomes_counts_safe_runs_and_names_missed_limits() {
     let texts = check::figure(&condensed(&table, &limits, |source| {
         map::svg(source, "safe", axes).unwrap()
     }));
-    for text in [
-        "Proportion of safe runs over mass flow rate and inflation strategy",
-        "4/4",
-        "3/4",
-        "0/3*",
-        "0/4",
-        "misses peak_vz < 25 m/s (3)",
-        "not deployed (1)",
-        "k/n: k of n runs are safe; safe: every limit is met.",
-    ] {
-        assert!(contains(&texts, text), "{text}: {texts:?}");
-    }
+    shows(
+        &texts,
+        &[
+            "Proportion of safe runs over mass flow rate and inflation strategy",
+            "4/4",
+            "3/4",
+            "0/3*",
+            "0/4",
+            "misses peak_vz < 25 m/s (3)",
+            "not deployed (1)",
+            "k/n: k of n runs are safe; safe: every limit is met.",
+        ],
+    );
     let texts =
         check::figure(&condensed(&table, &[], |source| map::svg(source, "verdict", axes).unwrap()));
-    for text in ["4/4", "3/4", "3/3*", "k/n: k of n runs are deployed; deployed: the verdict."] {
-        assert!(contains(&texts, text), "{text}: {texts:?}");
-    }
+    shows(&texts, &["4/4", "3/4", "3/3*", "k/n: k of n runs are deployed; deployed: the verdict."]);
     let single = mixed().judged(&limits);
     let single = Source { limits: &limits, ..source(&single) };
     let texts = check::figure(&map::svg(&single, "safe", ["mass_flow_rate", "N"]).unwrap());
-    for text in ["safe", "not safe", "∅", "S", "P"] {
-        assert!(contains(&texts, text), "{text}: {texts:?}");
-    }
+    shows(&texts, &["safe", "not safe", "∅", "S", "P"]);
     let table = mixed();
     let error = map::svg(&source(&table), "safe", ["mass_flow_rate", "N"]).unwrap_err();
     assert!(error.to_string().contains("the study has no limits"), "{error}");
@@ -204,16 +201,16 @@ fn the_history_of_a_point_is_the_median_of_its_runs() {
     assert_eq!((lines, svg.matches("fill-opacity=\"0.2\"").count()), (26, 7));
     let heading =
         "Outcome, at the end of a line (number of points); no mark: all runs deployed (5)";
-    for text in ["some runs deployed (1)", heading, "median, and range from least to largest"] {
-        assert!(contains(&texts, text), "{text}: {texts:?}");
-    }
+    shows(&texts, &["some runs deployed (1)", heading, "median, and range from least to largest"]);
 }
 
 #[test]
 fn the_standard_charts_answer_the_question_of_the_study() {
     let (table, limits) = (table(), limits());
-    let (kinds, notes) = condensed(&table, &limits, standard::kinds);
-    let names: Vec<String> = kinds.iter().map(ChartKind::file_name).collect();
+    let (names, notes) = condensed(&table, &limits, |source| {
+        let (charts, notes) = kinds::standard(source);
+        (charts.iter().map(|(kind, _)| kind.file_name()).collect::<Vec<_>>(), notes)
+    });
     assert_eq!(
         names,
         [
@@ -229,11 +226,10 @@ fn the_standard_charts_answer_the_question_of_the_study() {
     // More points: histories at the middle of the other parameters, one per strategy.
     let many = study(|_, _| {}, &[]);
     let asked = Source { limits: &limits, ..source(&many) };
-    let (kinds, notes) = standard::kinds(&asked);
-    let Some(ChartKind::At(_, rows, choice)) = kinds.last() else { panic!("{kinds:?}") };
-    assert_eq!((rows.len(), choice.as_str()), (2, "at N 6, mass flow rate 2 g/s"));
+    let (charts, notes) = kinds::standard(&asked);
+    let Some((_, fewer)) = charts.last() else { panic!("no histories") };
+    assert_eq!((fewer.rows.len(), fewer.choice.as_str()), (2, "at N 6, mass flow rate 2 g/s"));
     assert!(notes.iter().any(|note| note.starts_with("histories of 2 of 12 points")), "{notes:?}");
     let over = ChartKind::Over("peak_vz".to_owned(), "N".to_owned(), Vec::new());
-    let Some(ChartKind::At(_, rows, _)) = standard::reduced(&asked, &over) else { panic!() };
-    assert_eq!(rows.len(), 4, "N and strategy remain");
+    assert_eq!(over.reduced(&asked).unwrap().rows.len(), 4, "N and strategy remain");
 }

@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::chart::borders::Searched;
-use crate::chart::standard::ChartKind;
+use crate::chart::kinds::ChartKind;
+use crate::chart::map::Judged;
 use crate::job::proportion::Proportion;
 use crate::study::{Border, Level, Outcome};
 
@@ -81,35 +82,36 @@ fn drawn(borders: &[Border], criterion: &str) -> (String, Vec<String>) {
 #[test]
 fn borders_are_intervals_arrows_and_letters_between_the_ends_of_the_search() {
     let (svg, texts) = drawn(&borders(), "safe");
-    for text in [
-        "Largest safe mass flow rate over residual gas mass",
-        "study made_up: 4 searches, 80 runs",
-        "Mass flow rate (g/s)",
-        "Residual gas mass (g)",
-        "Inflation strategy",
-        "interval of the border (1)",
-        "safe at every value searched: a border, if any, lies beyond (1)",
-        "safe at no value searched: a border, if any, lies beyond (1)",
-        "not monotone: changes more than once (1)",
-        "safe up to the border",
-        "value searched: some runs safe",
-        "ends of the search",
-        "M",
-        // The axis is logarithmic, as the search.
-        "2",
-        "5",
-    ] {
-        assert!(contains(&texts, text), "{text}: {texts:?}");
-    }
+    shows(
+        &texts,
+        &[
+            "Largest safe mass flow rate over residual gas mass",
+            "study made_up: 4 searches, 80 runs",
+            "Mass flow rate (g/s)",
+            "Residual gas mass (g)",
+            "Inflation strategy",
+            "interval of the border (1)",
+            "safe at every value that is decided: a border, if any, lies beyond (1)",
+            "safe at no value that is decided: a border, if any, lies beyond (1)",
+            "not monotone: changes more than once (1)",
+            "safe up to the border",
+            "value searched: some runs safe",
+            "ends of the search",
+            "M",
+            // The axis is logarithmic, as the search.
+            "2",
+            "5",
+        ],
+    );
     assert_eq!(svg.matches("fill-opacity=\"0.3\"").count(), 3, "two columns and their legend");
     searched(&borders(), "safe", |source| {
         let over = borders::svg(source, Some("strategy"), &[]).unwrap();
         assert!(contains(&check::figure(&over), "rapid"));
         let error = borders::svg(source, Some("mass_flow_rate"), &[]).unwrap_err().to_string();
         assert!(error.contains("along which the study searches"), "{error}");
-        let (kinds, _) = standard::kinds(source);
-        assert_eq!(kinds[0], ChartKind::Borders(None, Vec::new()), "{kinds:?}");
-        assert_eq!(kinds[1].file_name(), "peak_vz-over-mass_flow_rate");
+        let (charts, _) = kinds::standard(source);
+        assert_eq!(charts[0].0, ChartKind::Borders(None, Vec::new()));
+        assert_eq!(charts[1].0.file_name(), "peak_vz-over-mass_flow_rate");
     });
     let table = runs(&borders());
     let error = borders::svg(&source(&table), None, &[]).unwrap_err().to_string();
@@ -130,9 +132,7 @@ fn searches_that_change_one_factor_at_a_time_stand_under_their_names() {
     ];
     let (_, texts) = drawn(&all, "safe");
     assert!(contains(&texts, "Largest safe mass flow rate"), "{texts:?}");
-    for text in ["base", "inflation strategy rapid", "residual gas mass 0.1 g"] {
-        assert!(contains(&texts, text), "{text}: {texts:?}");
-    }
+    shows(&texts, &["base", "inflation strategy rapid", "residual gas mass 0.1 g"]);
     assert!(
         texts.iter().any(|text| text.starts_with("Base: Inflation strategy direct")),
         "{texts:?}"
@@ -151,23 +151,27 @@ fn a_search_without_a_change_has_an_arrow_only_where_the_border_is_known_to_lie(
     let none = Outcome::NoChange { met: false };
     let all = [border("direct", 0.0, [4; 5], met.clone()), border("rapid", 0.0, [0; 5], none)];
     let (_, texts) = drawn(&all, "safe");
-    for text in ["A", "N", "safe at every value searched (1)", "safe at no value searched (1)"] {
-        assert!(contains(&texts, text), "{text}: {texts:?}");
-    }
+    shows(
+        &texts,
+        &[
+            "A",
+            "N",
+            "safe at every value that is decided (1)",
+            "safe at no value that is decided (1)",
+        ],
+    );
     // The last value is not decided: the border may lie below it.
     let open_end = [
         border("direct", 0.0, [4, 4, 3, 0, 0], FOUND),
         border("rapid", 0.0, [4, 4, 4, 4, 3], met.clone()),
     ];
     let (_, texts) = drawn(&open_end, "safe");
-    for text in ["A", "safe at every decided value (1)", "interval of the border (1)"] {
-        assert!(contains(&texts, text), "{text}: {texts:?}");
-    }
+    shows(&texts, &["A", "safe at every value that is decided (1)", "interval of the border (1)"]);
     let closed_end = [open_end[0].clone(), border("rapid", 0.0, [3, 4, 4, 4, 4], met)];
     let (_, texts) = drawn(&closed_end, "safe");
     assert!(!contains(&texts, "A"), "an arrow: {texts:?}");
     assert!(
-        contains(&texts, "safe at every decided value: a border, if any, lies beyond (1)"),
+        contains(&texts, "safe at every value that is decided: a border, if any, lies beyond (1)"),
         "{texts:?}"
     );
 }
@@ -175,23 +179,25 @@ fn a_search_without_a_change_has_an_arrow_only_where_the_border_is_known_to_lie(
 #[test]
 fn the_legend_reads_a_limit_as_a_limit_and_a_verdict_as_a_word() {
     let (_, texts) = drawn(&borders(), "peak_vz < 40 m/s");
-    for text in [
-        "Largest mass flow rate with peak_vz < 40 m/s over residual gas mass",
-        "peak_vz < 40 m/s up to the border",
-        "value searched: each run meets peak_vz < 40 m/s",
-        "value searched: some runs meet peak_vz < 40 m/s",
-    ] {
-        assert!(contains(&texts, text), "{text}: {texts:?}");
-    }
+    shows(
+        &texts,
+        &[
+            "Largest mass flow rate with peak_vz < 40 m/s over residual gas mass",
+            "peak_vz < 40 m/s up to the border",
+            "value searched: each run meets peak_vz < 40 m/s",
+            "value searched: some runs meet peak_vz < 40 m/s",
+        ],
+    );
     let one_outcome = [borders()[1].clone(), borders()[3].clone()];
     let (_, texts) = drawn(&one_outcome, "deployed");
-    for text in [
-        "Mass flow rate at the border between deployed and not deployed over",
-        "value searched: each run deployed",
-        "deployed here",
-    ] {
-        assert!(contains(&texts, text), "{text}: {texts:?}");
-    }
+    shows(
+        &texts,
+        &[
+            "Mass flow rate at the border between deployed and not deployed over",
+            "value searched: each run deployed",
+            "deployed here",
+        ],
+    );
 }
 
 #[test]
@@ -208,7 +214,7 @@ fn a_map_along_the_searched_parameter_has_the_values_of_every_search() {
         border.levels.sort_by(|a, b| a.value.total_cmp(&b.value));
     }
     searched(&found, "deployed", |source| {
-        let axes = standard::outcome_axes(&source.clone()).unwrap();
+        let axes = kinds::outcome_axes(source, Judged::Deployed).unwrap();
         assert!(axes.contains(&"mass_flow_rate".to_owned()), "{axes:?}");
         let svg = map::svg(source, "verdict", ["mass_flow_rate", "strategy"]).unwrap();
         let texts = check::figure(&svg);
@@ -218,7 +224,7 @@ fn a_map_along_the_searched_parameter_has_the_values_of_every_search() {
         let plain = Source { search: None, ..source.clone() };
         let error = map::svg(&plain, "verdict", ["mass_flow_rate", "strategy"]).unwrap_err();
         assert!(error.to_string().contains("37 values along one axis"), "{error}");
-        let axes = standard::outcome_axes(&plain).unwrap();
+        let axes = kinds::outcome_axes(&plain, Judged::Deployed).unwrap();
         assert!(!axes.contains(&"mass_flow_rate".to_owned()), "others: {axes:?}");
     });
 }

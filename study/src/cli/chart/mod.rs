@@ -3,29 +3,27 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-mod asked;
-mod question;
-
-use self::asked::{Asked, kind, of_outcome};
-use self::question::Question;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::picture::{self, Picture, refused};
 use super::print::print_rows;
 use super::target::{self, StudyArgs, Target};
 use super::{Format, best, output_error};
 use crate::analysis::replicates::Condensed;
-use crate::chart::map::Judged;
+use crate::chart::Source;
+use crate::chart::borders::Searched;
+use crate::chart::kinds::{self, ChartKind};
 use crate::chart::runs::Replicated;
-use crate::chart::standard::{self, ChartKind};
-use crate::chart::{Source, borders, history, map, over};
 use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::value::Value;
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error};
-use crate::store::history_file::StoredHistory;
 use crate::store::results::Results;
+use crate::store::stored::Stored;
 use crate::store::table::Table;
+use crate::study::{Border, Study};
+
+mod work_precision;
 
 /// Arguments of `billow chart`.
 #[derive(Debug, clap::Args)]
@@ -35,53 +33,57 @@ pub struct Args {
     /// Draw these columns of the histories over time, comma-separated: one line per job, one panel
     /// per column.
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',', conflicts_with_all = ["measure"])]
-    pub history: Vec<String>,
-    /// Draw this column of the table, over a parameter (--over) or two (--map). In a map `safe` and
-    /// `verdict` are the proportion of runs that are safe, or deployed.
+    history: Vec<String>,
+    /// Draw this column of the table, over a parameter (--over) or two (--map). `safe` and `verdict` are the
+    /// proportion of runs that are safe, or deployed, as a map; without --map over the two parameters that change
+    /// it the most.
     #[arg(long, value_name = "COLUMN", groups = ["with_over", "with_map"])]
-    pub measure: Option<String>,
-    /// Draw the map of outcomes: the proportion of safe runs (without limits: of deployed runs) over the
-    /// two parameters that change it the most, or those of --map.
-    #[arg(long, group = "with_map", conflicts_with_all = ["history", "measure", "borders"])]
-    pub outcome: bool,
+    measure: Option<String>,
     /// Draw the borders that the search of the study found, over the first other parameter with numbers, or
     /// that of --over.
-    #[arg(long, group = "with_over", conflicts_with_all = ["history", "measure", "outcome"])]
-    pub borders: bool,
+    #[arg(long, group = "with_over", conflicts_with_all = ["history", "measure"])]
+    borders: bool,
+    /// Draw work-precision diagrams, what each model, mesh and step costs and how large its error is, and print
+    /// the configurations on the front; in CSV and JSON every configuration.
+    #[arg(long, conflicts_with_all = ["history", "measure", "borders", "runs", "jobs", "condition", "title", "out"])]
+    work_precision: bool,
+    /// The cost of work-precision diagrams: element-steps, or seconds of this machine [default: work].
+    #[arg(long, value_enum, requires = "work_precision")]
+    cost: Option<work_precision::CostName>,
     /// Draw the measure, or the borders, over this parameter. Every other parameter that varies gives
     /// lines or panels; nothing is averaged but the runs of a point, of which the chart shows median and
     /// range.
     #[arg(long, value_name = "PARAMETER", requires = "with_over", conflicts_with = "map")]
-    pub over: Option<String>,
+    over: Option<String>,
     /// Draw one line per combination of these parameters, comma-separated; the other parameters
     /// that vary give panels [default: as many lines as are legible].
     #[arg(long, value_name = "PARAMETERS", value_delimiter = ',', requires = "over")]
-    pub by: Vec<String>,
-    /// Draw the measure, or the outcome, as a map over two parameters.
+    by: Vec<String>,
+    /// Draw the measure as a map over two parameters.
     #[arg(long, value_name = "X,Y", value_delimiter = ',', requires = "with_map")]
-    pub map: Vec<String>,
+    map: Vec<String>,
     /// Draw each run; replicates are parameters as any other [default: median and range of the runs of a
     /// point].
     #[arg(long)]
-    pub runs: bool,
+    runs: bool,
     /// Only these jobs: first digits of their ids, comma-separated.
     #[arg(long, value_name = "IDS", value_delimiter = ',')]
-    pub jobs: Vec<String>,
+    jobs: Vec<String>,
     /// Only rows for which this condition holds, as in `N == 6 and mass_flow_rate >= '2 g/s'`.
     #[arg(long = "where", value_name = "CONDITION", conflicts_with = "jobs")]
-    pub condition: Option<String>,
+    condition: Option<String>,
     /// Title of the chart [default: quantity and axes].
     #[arg(long, value_name = "TEXT")]
-    pub title: Option<String>,
+    title: Option<String>,
     /// Start of the time axis: s, or with a unit.
     #[arg(long, value_name = "TIME", requires = "history")]
-    pub from: Option<String>,
+    from: Option<String>,
     /// End of the time axis: s, or with a unit [default: soon after the last film has settled].
     #[arg(long, value_name = "TIME", requires = "history")]
-    pub to: Option<String>,
+    to: Option<String>,
     /// File to write, .svg or .png [default: both, in the folder charts of the results].
     #[arg(long, value_name = "FILE")]
-    pub out: Option<PathBuf>,
+    out: Option<PathBuf>,
     #[command(flatten)]
     units: UnitsOption,
     #[command(flatten)]
@@ -92,29 +94,99 @@ pub struct Args {
     quiet: QuietOption,
 }
 
+impl Args {
+    fn note(&self, text: &str) {
+        if !self.quiet.quiet {
+            eprintln!("note: {text}");
+        }
+    }
+
+    /// Whether the options ask for one chart.
+    fn is_one(&self) -> bool {
+        !self.history.is_empty() || self.measure.is_some() || self.borders
+    }
+
+    /// The one chart that the options ask for.
+    fn kind(&self, source: &Source<'_>) -> Result<ChartKind> {
+        let by = trimmed(&self.by);
+        if !self.history.is_empty() {
+            return Ok(ChartKind::History(trimmed(&self.history)));
+        }
+        let Some(measure) = self.measure.as_ref().map(|name| name.trim().to_owned()) else {
+            return Ok(ChartKind::Borders(self.over.clone(), by));
+        };
+        if let Some(over) = &self.over {
+            return Ok(ChartKind::Over(measure, over.clone(), by));
+        }
+        let axes = match trimmed(&self.map) {
+            none if none.is_empty() => None,
+            axes => Some(<[String; 2]>::try_from(axes).map_err(|axes| {
+                refused("--map", &axes.join(","), "not two parameters", "--map X,Y")
+            })?),
+        };
+        ChartKind::map(source, measure, axes)
+    }
+
+    /// The parameters whose runs a chart condenses: the replicates of the study that it does not name. Chosen jobs and
+    /// `--runs` are drawn one by one.
+    fn condensed(&self, study: Option<&Study>) -> Vec<String> {
+        if self.runs || !self.jobs.is_empty() {
+            return Vec::new();
+        }
+        let named = trimmed(&[&self.by[..], &self.map, self.over.as_slice()].concat());
+        let replicates = study.map(Study::replicates).unwrap_or_default();
+        replicates.into_iter().filter(|name| !named.contains(name)).collect()
+    }
+}
+
+fn trimmed(names: &[String]) -> Vec<String> {
+    names.iter().map(|name| name.trim().to_owned()).collect()
+}
+
 /// Runs `billow chart`: prints the paths of the pictures.
 ///
 /// # Errors
 /// Results that cannot be read; an unknown column or parameter; a picture that cannot be written.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let asked = kind(args)?;
     let range = [time("--from", args.from.as_deref())?, time("--to", args.to.as_deref())?];
     if let Some(path) = &args.out {
         Picture::of(path)?;
     }
+    if !args.is_one() {
+        let one = "one chart: --history, --measure or --borders";
+        if let Some(path) = &args.out {
+            let path = path.display().to_string();
+            return Err(refused("--out", &path, "one file for several charts", one));
+        }
+        if let Some(title) = &args.title {
+            return Err(refused("--title", title, "one title for several charts", one));
+        }
+    }
     let mut target = target::open(&args.study, &args.set.set, &args.units)?;
+    if args.work_precision {
+        let cost = args.cost.unwrap_or_default();
+        return work_precision::run(&target, cost, args.output.format(), out);
+    }
     target.add_keys(&[], args.condition.as_deref())?;
     let Target { results, study, table, records, .. } = target;
-    let name = study_name(&results);
-    let question = Question::read(&results, study.as_ref())?;
-    let single = Source {
-        limits: &question.limits,
-        search: question.search(),
-        ..source(args, &name, &table)?
-    };
-    let replicates = question.replicates(args, asked.as_ref());
+    let study = study.as_ref();
+    let (name, replicates) = (study_name(&results), args.condensed(study));
+    let (borders, all_replicates) = (borders(&results, study)?, study.map(Study::replicates));
+    let criterion = study.and_then(|study| Some(study.searched()?.1.text(study.result_limits())));
+    let search = study.and_then(|study| {
+        Some(Searched {
+            parameter: study.searched()?.0,
+            criterion: criterion.as_deref()?,
+            replicates: all_replicates.as_deref()?,
+            replicate_count: study.replicate_count(),
+            borders: &borders,
+        })
+    });
+    let limits = study.map_or(&[][..], Study::result_limits);
+    let single = Source { limits, search, ..source(args, &name, &table)? };
     let is_mesh = |name: &String| name == MESH_PARAMETER;
-    let meshes = if replicates.iter().any(is_mesh) { question.meshes.clone() } else { Vec::new() };
+    let meshes = study.filter(|_| replicates.iter().any(is_mesh)).map(Study::meshes);
+    let meshes = meshes.unwrap_or_default();
     let condensed =
         (!replicates.is_empty()).then(|| Condensed::of(single.table, &single.rows, &replicates));
     let source = condensed.as_ref().map_or_else(
@@ -131,55 +203,55 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             ..single.clone()
         },
     );
-    let standard = asked.is_none();
-    let chosen_axes = matches!(&asked, Some(Asked::Outcome(axes)) if axes.is_empty());
-    let kinds = match asked {
-        Some(Asked::One(kind)) => vec![kind],
-        Some(Asked::Outcome(axes)) => vec![outcome(&source, axes)?],
-        None => standard_kinds(&source, args.quiet.quiet),
+    let charts = if args.is_one() {
+        vec![(args.kind(&source)?, source)]
+    } else {
+        let (charts, notes) = kinds::standard(&source);
+        notes.iter().for_each(|note| args.note(note));
+        charts
     };
     let read = |id: &JobId| results.read_history(id, records.get(id));
     let mut written: Vec<PathBuf> = Vec::new();
-    for kind in &kinds {
-        match draw(&source, kind, range, &read) {
-            Ok(svg) => written.extend(write(args, &results, kind, &svg)?),
-            // A standard chart may not fit this study; then it shows fewer points, or is skipped, with a
-            // message.
-            Err(Error::Input(error)) if standard => {
-                let note = |text: String| {
-                    if !args.quiet.quiet {
-                        eprintln!("billow: {text}");
-                    }
-                };
-                let fewer =
-                    if question.is_asked() { standard::reduced(&source, kind) } else { None };
-                let drawn = fewer.as_ref().map(|fewer| draw(&source, fewer, range, &read));
-                if let (Some(Ok(svg)), Some(ChartKind::At(_, _, choice))) = (&drawn, &fewer) {
-                    note(format!("{} {choice}: {}", kind.file_name(), error.problem));
-                    written.extend(write(args, &results, kind, svg)?);
-                } else {
-                    note(format!("no {}: {}", kind.file_name(), error.problem));
+    for (kind, source) in &charts {
+        let svg = match kind.svg(source, range, &read) {
+            // A standard chart may not fit this study; then it shows fewer points, or is skipped.
+            Err(Error::Input(error)) if !args.is_one() => {
+                let fewer = kind.reduced(source);
+                let drawn = fewer.as_ref().and_then(|fewer| kind.svg(fewer, range, &read).ok());
+                let choice = fewer.filter(|_| drawn.is_some()).map(|fewer| fewer.choice);
+                let place = choice.map_or_else(
+                    || format!("no {}", kind.file_name()),
+                    |choice| format!("{} {choice}", kind.file_name()),
+                );
+                args.note(&format!("{place}: {}", error.problem));
+                match drawn {
+                    Some(svg) => svg,
+                    None => continue,
                 }
             }
-            Err(error) if chosen_axes => return Err(of_outcome(error)),
-            Err(error) => return Err(error),
+            svg => svg?,
+        };
+        match &args.out {
+            Some(path) => {
+                picture::write(path, &svg)?;
+                written.push(path.clone());
+            }
+            None => written.extend(write(&results, &kind.file_name(), &svg)?),
         }
     }
     print(&written, args.output.format(), out)?;
     if !args.quiet.quiet && args.output.format() == Format::Table {
-        best::print(study.as_ref(), &table, &single.rows);
+        best::print(study, &table, &single.rows);
     }
     Ok(())
 }
 
-/// The map of outcomes.
-fn outcome(source: &Source<'_>, axes: Vec<String>) -> Result<ChartKind> {
-    let given = <[String; 2]>::try_from(axes).ok();
-    let axes = given.or_else(|| standard::outcome_axes(source)).ok_or_else(|| {
-        let problem = "a map needs two parameters that vary";
-        refused("--outcome", "", problem, "a study that varies two, without its replicates")
-    })?;
-    Ok(ChartKind::Map(Judged::of(source).name().to_owned(), axes))
+/// What the search of a study found.
+fn borders(results: &Results<'static>, study: Option<&Study>) -> Result<Vec<Border>> {
+    match study.filter(|study| study.searched().is_some()) {
+        Some(study) => Ok(Stored::read(results.clone())?.asked(study.clone()).borders()),
+        None => Ok(Vec::new()),
+    }
 }
 
 /// The rows that `--jobs` or `--where` choose.
@@ -211,48 +283,15 @@ fn study_name(results: &Results<'_>) -> String {
         .map_or_else(|| root.display().to_string(), |name| name.to_string_lossy().into_owned())
 }
 
-/// The standard charts; a message on stderr says what is missing and why.
-fn standard_kinds(source: &Source<'_>, quiet: bool) -> Vec<ChartKind> {
-    let (kinds, notes) = standard::kinds(source);
-    for note in notes.iter().filter(|_| !quiet) {
-        eprintln!("note: {note}");
-    }
-    kinds
-}
-
-/// Writes a chart to the file asked for, or in every format to the folder of charts. Returns the paths.
-fn write(args: &Args, results: &Results<'_>, kind: &ChartKind, svg: &str) -> Result<Vec<PathBuf>> {
-    if let Some(path) = &args.out {
-        picture::write(path, svg)?;
-        return Ok(vec![path.clone()]);
-    }
+/// Writes a chart in every format to the folder of charts. Returns the paths.
+fn write(results: &Results<'_>, name: &str, svg: &str) -> Result<Vec<PathBuf>> {
     let folder = results.charts_path();
     Disk.create_folder(&folder).map_err(|error| disk_error(&folder, &error))?;
-    let path =
-        |format: Picture| folder.join(format!("{}.{}", kind.file_name(), format.extension()));
-    let paths = Picture::ALL.map(path).to_vec();
+    let paths = Picture::ALL.map(|format| folder.join(format!("{name}.{}", format.extension())));
     for path in &paths {
         picture::write(path, svg)?;
     }
-    Ok(paths)
-}
-
-fn draw(
-    source: &Source<'_>,
-    kind: &ChartKind,
-    range: [Option<f64>; 2],
-    read: &dyn Fn(&JobId) -> Result<StoredHistory>,
-) -> Result<String> {
-    match kind {
-        ChartKind::History(columns) => history::svg(source, columns, range, read),
-        ChartKind::Over(measure, parameter, by) => over::svg(source, measure, parameter, by),
-        ChartKind::Map(measure, [x, y]) => map::svg(source, measure, [x, y]),
-        ChartKind::Borders(over, by) => borders::svg(source, over.as_deref(), by),
-        ChartKind::At(kind, rows, _) => {
-            let choice = [source.choice.as_str(), "at middle values"].join(" ").trim().to_owned();
-            draw(&Source { rows: rows.clone(), choice, ..source.clone() }, kind, range, read)
-        }
-    }
+    Ok(paths.to_vec())
 }
 
 /// A time on the command line, s.

@@ -76,17 +76,12 @@ pub(super) fn nearest(texts: &[String], stored: &[f64], quiet: bool) -> Result<V
     numbers.dedup();
     if numbers.len() > MAX_FRAMES {
         let problem = "too many frames for one picture";
-        return Err(refused(
-            "--times",
-            &asked.to_string(),
-            problem,
-            &format!("at most {MAX_FRAMES}"),
-        ));
+        let allowed = format!("at most {MAX_FRAMES}");
+        return Err(refused("--times", &asked.to_string(), problem, &allowed));
     }
     if numbers.len() < asked && !quiet {
         eprintln!(
-            "billow: {} of these {asked} times have the same nearest frame as another time; {} frames \
-             are stored (outputs.frames)",
+            "billow: {} of these {asked} times have the frame of another time; {} frames are stored (outputs.frames)",
             asked - numbers.len(),
             stored.len()
         );

@@ -16,17 +16,15 @@ use crate::input::value::Value;
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error};
-use crate::render::filmstrip::Filmstrip;
+use crate::render::filmstrip::{Colour, Filmstrip};
 use crate::render::projection::View;
 use crate::store::history_file::{self, StoredFrames};
 use crate::store::stored::Stored;
 
 mod choose;
-mod colours;
 mod values;
 
 use choose::{by_displacement, nearest};
-use colours::colour;
 
 /// Arguments of `billow frames`.
 #[derive(Debug, clap::Args)]
@@ -85,7 +83,6 @@ pub enum ColourArg {
     /// The speed, on one scale in all shapes.
     Speed,
     /// One colour.
-    #[value(alias = "plain")]
     None,
 }
 
@@ -122,12 +119,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     };
     let frames: Vec<Frame> =
         numbers.iter().map(|number| stored.frame(*number)).collect::<Result<_>>()?;
-    let (colour, mut notes) = colour(args.colour, &stored, &frames)?;
-    for note in notes.iter().filter(|_| !args.quiet.quiet) {
-        eprintln!("billow: {note}");
-    }
+    let colour = colour(args.colour, &stored, &frames)?;
     let (values, meaning) = values::below(&frames, &history);
-    notes.extend(meaning);
+    let notes: Vec<String> = meaning.into_iter().collect();
     let title = args.title.clone().unwrap_or(source.title);
     let svg = Filmstrip {
         title: &title,
@@ -173,6 +167,26 @@ fn displacements(stored: &StoredFrames) -> Result<Vec<f64>> {
         before = frame;
     }
     Ok(displacements)
+}
+
+/// The meaning of the colours: the one asked for, or storeys if the film has some.
+fn colour(asked: Option<ColourArg>, stored: &StoredFrames, frames: &[Frame]) -> Result<Colour> {
+    let capsule = stored.storeys().iter().any(|storey| *storey > 0);
+    let refuse = |name, problem| refused("--colour", name, problem, "regime, stress, speed, none");
+    let found = match asked {
+        Some(ColourArg::Storey) if !capsule => {
+            return Err(refuse("storey", "this film is not a capsule and has no storeys"));
+        }
+        Some(ColourArg::Storey) => Some(Colour::Storey),
+        Some(ColourArg::Regime) => Some(Colour::Regime),
+        Some(ColourArg::None) => Some(Colour::Plain),
+        Some(ColourArg::Stress) => values::stress(frames).map(Colour::Quantity),
+        Some(ColourArg::Speed) => values::speed(frames, stored.triangles()).map(Colour::Quantity),
+        None if capsule => Some(Colour::Storey),
+        None => Some(Colour::Plain),
+    };
+    let name = if asked == Some(ColourArg::Speed) { "speed" } else { "stress" };
+    found.ok_or_else(|| refuse(name, "the frames of this file do not have it"))
 }
 
 fn source(args: &Args) -> Result<Source> {

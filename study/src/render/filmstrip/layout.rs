@@ -110,8 +110,9 @@ impl Layout {
         fits.unwrap_or(1.0) * ten
     }
 
-    /// Draws the scale bar, 1, 2 or 5 times a power of ten long, with its length as text.
-    pub(super) fn scale_bar(&self, page: &mut Page, [x, y]: [f64; 2]) {
+    /// Draws the scale bar, 1, 2 or 5 times a power of ten long, with its length as text. Returns the end of its
+    /// text with some space, mm.
+    pub(super) fn scale_bar(&self, page: &mut Page, [x, y]: [f64; 2]) -> f64 {
         let length = self.bar();
         let (end, middle, tick) = (x + length * self.scale, y - 0.35 * LETTER, 0.35 * LETTER);
         let stroke = Stroke::solid("#000000", 0.25);
@@ -121,26 +122,9 @@ impl Layout {
             page.line([x, middle - tick], [x, middle + tick], &stroke);
         }
         page.close();
-        page.text([end + 0.5 * LETTER, y], &Letters::new(LETTER), &length_label(length));
-    }
-
-    /// Width of the scale bar, its text and the space after it.
-    pub(super) fn bar_width(&self) -> f64 {
-        let length = self.bar();
-        length * self.scale + font::width(&length_label(length), LETTER) + 3.0 * LETTER
-    }
-
-    /// Number of lines of the legend.
-    pub(super) fn lines_below(&self, legend: &[(String, [u8; 3])]) -> usize {
-        let (mut lines, mut x) = (1, MARGIN + self.bar_width());
-        for (name, _) in legend {
-            let width = 1.6 * LETTER + font::width(name, LETTER);
-            if x + width > WIDTH - MARGIN {
-                (lines, x) = (lines + 1, MARGIN);
-            }
-            x += width + LETTER;
-        }
-        lines
+        let label = length_label(length);
+        page.text([end + 0.5 * LETTER, y], &Letters::new(LETTER), &label);
+        end + font::width(&label, LETTER) + 3.0 * LETTER
     }
 }
 

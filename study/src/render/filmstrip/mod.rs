@@ -9,12 +9,12 @@ use billow_solver::mechanics::material::Regime;
 use billow_solver::output::frames::Frame;
 
 use self::layout::Layout;
-use super::figure::style;
-use super::font;
-use super::page::{self, Anchor, Letters, Page, Position, Stroke};
+use super::figure::legend::{Legend, Sample};
+use super::figure::map::{Cell, Ground};
+use super::figure::{style, ticks};
+use super::page::{self, Anchor, Letters, Page, Position};
 use super::projection::{Facet, View};
 
-mod bar;
 mod layout;
 
 /// Width of the page, mm: across an A4 page with its margins.
@@ -33,25 +33,20 @@ const VALUE_LINE: f64 = 1.35 * LETTER;
 const INSIDE_BRIGHTNESS: f64 = 0.72;
 
 /// Colours of storeys, repeated: neighbours differ in hue and brightness (Okabe and Ito).
-const STOREYS: [[u8; 3]; 7] = [
-    [0x00, 0x72, 0xb2],
-    [0xe6, 0x9f, 0x00],
-    [0x00, 0x9e, 0x73],
-    [0xf0, 0xe4, 0x42],
-    [0xd5, 0x5e, 0x00],
-    [0x56, 0xb4, 0xe9],
-    [0xcc, 0x79, 0xa7],
-];
+const STOREYS: [&str; 7] =
+    ["#0072b2", "#e69f00", "#009e73", "#f0e442", "#d55e00", "#56b4e9", "#cc79a7"];
 /// Colour of both caps.
-const CAPS: [u8; 3] = [0xd9, 0xd9, 0xd9];
+const CAPS: &str = "#d9d9d9";
 /// Colour of film without storeys.
-const PLAIN: [u8; 3] = [0xc2, 0xd2, 0xe0];
+const PLAIN: &str = "#c2d2e0";
 /// States of the film, from bright to dark.
-const REGIMES: [(Regime, &str, [u8; 3]); 3] = [
-    (Regime::Taut, "taut", [0xfd, 0xe7, 0x8c]),
-    (Regime::Wrinkled, "wrinkled", [0x3d, 0x9f, 0xb5]),
-    (Regime::Slack, "slack", [0x3f, 0x1f, 0x63]),
+const REGIMES: [(Regime, &str, &str); 3] = [
+    (Regime::Taut, "taut", "#fde78c"),
+    (Regime::Wrinkled, "wrinkled", "#3d9fb5"),
+    (Regime::Slack, "slack", "#3f1f63"),
 ];
+/// Size of the colour bar of a quantity, mm.
+const BAR: [f64; 2] = [70.0, 3.2];
 
 /// Meaning of the colours.
 #[derive(Debug, Clone, PartialEq)]
@@ -105,45 +100,53 @@ impl Quantity {
         let value = self.values.get(frame).and_then(|values| values.get(element)).copied();
         ((value.unwrap_or(low) - low) / (high - low)).clamp(0.0, 1.0)
     }
+
+    /// Draws the scale with its upper left corner at `corner`. Returns its height, mm.
+    fn draw_bar(&self, page: &mut Page, corner: Position) -> f64 {
+        let [low, high] = self.range;
+        style::colour_bar(page, corner, BAR);
+        let below = corner[1] + BAR[1];
+        let letters = Letters::new(LETTER).at(Anchor::Middle);
+        for (value, text) in ticks::linear(low, high, 6) {
+            let x = corner[0] + BAR[0] * (value - low) / (high - low);
+            page.line([x, below], [x, below + 0.8], &style::AXIS);
+            page.text([x, below + VALUE_LINE], &letters, &text);
+        }
+        page.text([corner[0], below + 2.0 * VALUE_LINE], &Letters::new(LETTER), &self.label);
+        BAR[1] + 2.0 * VALUE_LINE + 1.5
+    }
 }
 
 impl Filmstrip<'_> {
     /// The SVG text.
     pub fn svg(&self) -> String {
         let layout = Layout::of(self);
-        let legend = self.legend();
-        let below = LINE * layout.lines_below(&legend) as f64;
-        let bar = if matches!(self.colour, Colour::Quantity(_)) { bar::HEIGHT } else { 0.0 };
-        let notes: Vec<String> = self
-            .notes
-            .iter()
-            .flat_map(|note| page::wrapped(note, LETTER, WIDTH - 2.0 * MARGIN))
-            .collect();
-        let height = layout.bottom() + below + bar + LINE * notes.len() as f64 + MARGIN;
         let mut page = Page::new();
         let title = page::cut(self.title, LETTER, WIDTH - 2.0 * MARGIN);
         page.text([MARGIN, MARGIN + LETTER], &Letters::new(LETTER), &title);
+        let middle = Letters::new(LETTER).at(Anchor::Middle);
         for (number, frame) in self.frames.iter().enumerate() {
             self.panel(&mut page, &layout, number, frame);
             let [x, y] = layout.corner(number);
-            let letters = Letters::new(LETTER).at(Anchor::Middle);
             for (line, text) in self.values.get(number).into_iter().flatten().enumerate() {
                 let under = [x + 0.5 * layout.width, y + 1.3 * LETTER + line as f64 * VALUE_LINE];
-                page.text(under, &letters, &page::cut(text, LETTER, layout.cell()));
+                page.text(under, &middle, &page::cut(text, LETTER, layout.cell()));
             }
         }
-        let baseline = layout.bottom() + LETTER;
-        layout.scale_bar(&mut page, [MARGIN, baseline]);
-        draw_legend(&mut page, &legend, [MARGIN + layout.bar_width(), baseline]);
-        if let Colour::Quantity(quantity) = &self.colour {
-            bar::draw(&mut page, quantity, [MARGIN + layout.bar_width(), baseline - LETTER]);
+        let mut y = layout.bottom();
+        let beside = layout.scale_bar(&mut page, [MARGIN, y + LETTER]);
+        y += match &self.colour {
+            Colour::Quantity(quantity) => quantity.draw_bar(&mut page, [beside, y]),
+            _ => self.legend().draw(&mut page, [beside, y - 1.0], WIDTH - MARGIN - beside),
         }
-        let grey = Letters { colour: "#444444", ..Letters::new(LETTER) };
-        for (number, note) in notes.iter().enumerate() {
-            let y = layout.bottom() + below + bar + LETTER + LINE * number as f64;
-            page.text([MARGIN, y], &grey, note);
+        .max(LINE);
+        let grey = Letters { colour: style::GREY, ..Letters::new(LETTER) };
+        let width = WIDTH - 2.0 * MARGIN;
+        for note in self.notes.iter().flat_map(|note| page::wrapped(note, LETTER, width)) {
+            page.text([MARGIN, y + LETTER], &grey, &note);
+            y += LINE;
         }
-        page.finish(WIDTH, height, self.title)
+        page.finish(WIDTH, y + MARGIN, self.title)
     }
 
     /// Draws one shape. The lines between elements are thinner if there are many elements.
@@ -174,7 +177,8 @@ impl Filmstrip<'_> {
                 short(c[0] - b[0]),
                 short(c[1] - b[1]),
             );
-            page.path(&hexadecimal(self.fill(facet, number, frame)), &d);
+            let [r, g, b] = self.fill(facet, number, frame);
+            page.path(&format!("#{r:02x}{g:02x}{b:02x}"), &d);
         }
         page.close();
     }
@@ -186,13 +190,13 @@ impl Filmstrip<'_> {
     )]
     fn fill(&self, facet: &Facet, number: usize, frame: &Frame) -> [u8; 3] {
         let (colour, dark) = match &self.colour {
-            Colour::Plain => (PLAIN, 0.4),
-            Colour::Storey => (self.storey_colour(self.storeys[facet.element]), 0.45),
+            Colour::Plain => (rgb(PLAIN), 0.4),
+            Colour::Storey => (rgb(self.storey_colour(self.storeys[facet.element])), 0.45),
             // The brightness shows the state; the shading is weak.
             Colour::Regime => {
                 let regime = frame.regimes[facet.element];
                 let known = REGIMES.iter().find(|(known, ..)| *known == regime);
-                (known.map_or(PLAIN, |(.., colour)| *colour), 0.75)
+                (rgb(known.map_or(PLAIN, |(.., colour)| colour)), 0.75)
             }
             // Shading would change the value that a colour shows, so it is weak, and equal on both sides.
             Colour::Quantity(quantity) => {
@@ -210,16 +214,16 @@ impl Filmstrip<'_> {
         self.storeys.iter().copied().max().unwrap_or(0)
     }
 
-    fn storey_colour(&self, storey: u32) -> [u8; 3] {
+    fn storey_colour(&self, storey: u32) -> &'static str {
         if storey == 0 || storey == self.top_cap() {
             return CAPS;
         }
         STOREYS[(storey as usize - 1) % STOREYS.len()]
     }
 
-    /// Names and colours of the legend.
-    fn legend(&self) -> Vec<(String, [u8; 3])> {
-        match self.colour {
+    /// The names of the colours.
+    fn legend(&self) -> Legend {
+        let entries: Vec<(String, &'static str)> = match self.colour {
             Colour::Plain | Colour::Quantity(_) => Vec::new(),
             Colour::Regime => {
                 REGIMES.iter().map(|(_, name, colour)| ((*name).to_owned(), *colour)).collect()
@@ -227,7 +231,6 @@ impl Filmstrip<'_> {
             Colour::Storey => {
                 let storeys = self.top_cap().saturating_sub(1);
                 // When the colours repeat, one entry stands for all storeys with its colour.
-                let colours = u32::try_from(STOREYS.len()).unwrap_or(u32::MAX);
                 let name = |first: u32| {
                     let all: Vec<String> = (first..=storeys)
                         .step_by(STOREYS.len())
@@ -239,33 +242,21 @@ impl Filmstrip<'_> {
                     };
                     (format!("storey {all}"), self.storey_colour(first))
                 };
-                let mut legend: Vec<_> = (1..=storeys.min(colours)).map(name).collect();
-                legend.push(("caps".to_owned(), CAPS));
-                legend
+                let names = (1..=storeys).take(STOREYS.len()).map(name);
+                names.chain([("caps".to_owned(), CAPS)]).collect()
             }
-        }
+        };
+        let entry = |(name, colour): (String, &'static str)| {
+            let ground = Ground::Colour(colour, "#000000");
+            (Sample::Cell(Cell { ground, ..Cell::default() }), name)
+        };
+        Legend { heading: String::new(), entries: entries.into_iter().map(entry).collect() }
     }
 }
 
-/// Draws a legend, on as many lines as it needs, from `position` on.
-fn draw_legend(page: &mut Page, legend: &[(String, [u8; 3])], position: Position) {
-    let mut position = position;
-    for (name, colour) in legend {
-        let width = 1.6 * LETTER + font::width(name, LETTER);
-        if position[0] + width > WIDTH - MARGIN {
-            position = [MARGIN, position[1] + LINE];
-        }
-        let [x, y] = position;
-        let (corner, size) = ([x, y - 0.9 * LETTER], [1.2 * LETTER, LETTER]);
-        page.fill(corner, size, &hexadecimal(*colour));
-        page.frame(corner, size, &Stroke::solid("#000000", 0.12));
-        page.text([x + 1.6 * LETTER, y], &Letters::new(LETTER), name);
-        position[0] += width + LETTER;
-    }
-}
-
-fn hexadecimal([r, g, b]: [u8; 3]) -> String {
-    format!("#{r:02x}{g:02x}{b:02x}")
+/// The channels of a colour as `#0072b2`.
+fn rgb(colour: &str) -> [u8; 3] {
+    [1, 3, 5].map(|at| u8::from_str_radix(&colour[at..at + 2], 16).unwrap_or(0))
 }
 
 /// Hundredths of a millimetre as millimetres, in as few characters as possible.

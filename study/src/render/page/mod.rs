@@ -127,11 +127,6 @@ impl Page {
         );
     }
 
-    /// A closed area in a light shade of a colour, through which lines below it are visible.
-    pub fn area(&mut self, positions: &[Position], colour: &str) {
-        self.shade(positions, colour, 0.3);
-    }
-
     /// A closed area in a colour with an opacity from 0 to 1.
     pub fn shade(&mut self, positions: &[Position], colour: &str, opacity: f64) {
         let _ = writeln!(
@@ -301,23 +296,6 @@ mod tests {
             let read: String =
                 shown.text().unwrap_or("").chars().filter(|c| !c.is_whitespace()).collect();
             prop_assert_eq!(read, printable.replace(['\u{fffe}', '\u{ffff}'], ""));
-        }
-
-        #[test]
-        fn a_hatch_stays_inside_its_rectangle(width in 1.0..40.0, height in 1.0..40.0, gap in 0.5..5.0) {
-            let mut page = Page::new();
-            page.hatch([2.0, 3.0], [width, height], gap, &Stroke::solid("#000000", 0.1));
-            let svg = page.finish(50.0, 50.0, "");
-            let parsed = Document::parse(&svg).unwrap();
-            for line in parsed.descendants().filter(|node| node.has_tag_name("line")) {
-                let attribute = |name: &str| line.attribute(name).unwrap().parse::<f64>().unwrap();
-                for x in [attribute("x1"), attribute("x2")] {
-                    prop_assert!((1.999..=width + 2.001).contains(&x));
-                }
-                for y in [attribute("y1"), attribute("y2")] {
-                    prop_assert!((2.999..=height + 3.001).contains(&y));
-                }
-            }
         }
     }
 }

@@ -10,7 +10,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use billow_study::analysis::work_precision::{Cost, Diagram, Member, SceneRuns, label};
-use billow_study::chart::pareto as pictures;
+use billow_study::chart::work_precision as pictures;
 use billow_study::cli::options::{OutputOptions, QuietOption};
 use billow_study::cli::print::print_rows;
 use billow_study::cli::{Format, instruction_set};
@@ -88,7 +88,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     for (cost, ending) in [(Cost::Work, ""), (Cost::Seconds, "_seconds")] {
         drawn.push((format!("pareto_exact{ending}"), pictures::overview(&diagrams, cost)));
         drawn.extend(diagrams.iter().map(|diagram| {
-            (format!("pareto_{}{ending}", diagram.name), pictures::scene(diagram, cost, None))
+            (format!("pareto_{}{ending}", diagram.name), pictures::scene(diagram, cost))
         }));
     }
     draw(&args.out, drawn, format == Format::Table, out)

@@ -1,4 +1,4 @@
-//! Work-precision diagrams: table, pictures, stored scenes, messages.
+//! Work-precision diagrams: table and pictures.
 
 use serde_json::json;
 
@@ -23,11 +23,10 @@ fn study() -> serde_json::Value {
 }
 
 #[test]
-fn the_front_is_printed_drawn_and_read_again() {
+fn the_front_is_printed_and_drawn() {
     let folder = TestFolder::new(&study());
     folder.stdout(&["run", "grid.json", "-q"]);
-    let arguments = ["pareto", "grid.json", "--scenes", "early", "--all", "--json", "-q"];
-    let printed = folder.stdout(&arguments);
+    let printed = folder.stdout(&["chart", "grid.json", "--work-precision", "--json"]);
     let rows: serde_json::Value = serde_json::from_str(&printed).unwrap();
     let rows = rows.as_array().unwrap();
     let of = |scene: &'static str, quantity: &'static str| {
@@ -47,43 +46,19 @@ fn the_front_is_printed_drawn_and_read_again() {
     let piston = energies.iter().find(|row| row["configuration"] == "piston").unwrap();
     let expected = (piston["value"].as_f64().unwrap() / reference - 1.0).abs();
     assert!((piston["error"].as_f64().unwrap() - expected).abs() < 1e-12);
-    assert_eq!(of("early", "volume").count(), 3, "courses are compared too");
-    assert_eq!(of("late", "volume").count(), 0);
-    for name in ["pareto", "pareto_early"] {
+    assert_eq!(of("late", "volume").count(), 3, "courses are compared too");
+    let seconds = ["chart", "grid.json", "--work-precision", "--cost", "seconds"];
+    let front = folder.stdout(&seconds);
+    assert!(
+        front.contains("early") && front.contains("work-precision-late-seconds.png"),
+        "{front}"
+    );
+    for name in ["work-precision", "work-precision-early", "work-precision-early-seconds"] {
         for ending in ["svg", "png"] {
             let path = folder.path().join(format!("results/grid/charts/{name}.{ending}"));
             assert!(std::fs::metadata(&path).unwrap().len() > 1000, "{}", path.display());
         }
     }
-    let one = ["pareto", "grid.json", "--scenes", "early,late", "--all", "--json", "-q"];
-    let one = folder.stdout(&[&one[..], &["--measures", "late:volume"]].concat());
-    let one: serde_json::Value = serde_json::from_str(&one).unwrap();
-    let of_late = one.as_array().unwrap().iter().filter(|row| row["scene"] == "late");
-    assert!(of_late.clone().count() > 0 && of_late.clone().all(|row| row["quantity"] == "volume"));
-    assert!(one.as_array().unwrap().iter().any(|row| row["quantity"] == "final_volume"));
-    let alone = folder.run(&["pareto", "grid.json"]);
-    let text = stderr(&alone);
-    assert!(text.contains("early: errors refer to film, subdivisions 3"), "{text}");
     let doctor = folder.run(&["doctor"]);
     assert_eq!(doctor.status.code(), Some(0), "{}", stderr(&doctor));
-}
-
-#[test]
-fn unknown_names_are_refused_with_those_that_exist() {
-    let mut study = study();
-    study["grid"]["solver.model"] = json!(["piston"]);
-    let folder = TestFolder::new(&study);
-    folder.stdout(&["run", "grid.json", "-q"]);
-    std::fs::write(folder.path().join("peer.json"), b"{\"name\": \"x\"}").unwrap();
-    for (arguments, expected) in [
-        (["--scenes", "earl"], "did you mean early?"),
-        (["--scenes", "early,nowhere"], "early, late"),
-        (["--peer", "peer.json"], "missing field"),
-    ] {
-        let output = folder.run(&[&["pareto", "grid.json"], &arguments[..]].concat());
-        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
-        assert!(stderr(&output).contains(expected), "{}", stderr(&output));
-    }
-    let output = folder.run(&["pareto", "grid.json", "--scenes", "early", "--measures", "peak_v"]);
-    assert!(stderr(&output).contains("did you mean peak_vz?"), "{}", stderr(&output));
 }
