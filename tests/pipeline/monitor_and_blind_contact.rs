@@ -196,7 +196,6 @@ fn passages_in_capsule_scenes_with_blind_contact_are_reported() {
 #[test]
 fn passages_in_all_studies_with_blind_contact_are_reported() {
     let studies = [
-        "auto",
         "convergence",
         "first",
         "folds",

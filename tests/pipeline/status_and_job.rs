@@ -159,7 +159,7 @@ fn job_reports_failures_and_infeasible_points_with_time_place_and_nearest() {
     let said = folder.stdout(&["job", &failed]);
     assert!(said.contains("step_limit: the run used all steps"), "{said}");
     assert!(said.contains("\n  time ") && said.contains("\n  location "), "{said}");
-    assert!(said.contains("proposed  more steps: solver.step_limit"), "{said}");
+    assert!(said.contains("try       more steps: solver.step_limit"), "{said}");
     let infeasible = ids(&folder, "infeasible").remove(0);
     let said = folder.stdout(&["job", &infeasible, "results/grid"]);
     assert!(
