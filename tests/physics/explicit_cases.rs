@@ -1,5 +1,5 @@
 //! Film in motion: moving supports, free fall, failures. Momentum, the stable step and damping are
-//! reference cases of `billow validate`.
+//! reference cases of `billow-checks validate`.
 
 use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{icosphere, nodes_where, sheet};

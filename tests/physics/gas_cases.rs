@@ -1,5 +1,5 @@
 //! The gas against independent quadratures, and inflow windows against their closed form. Filling,
-//! blow-down and cooling are reference cases of `billow validate`.
+//! blow-down and cooling are reference cases of `billow-checks validate`.
 
 use billow_solver::integrators::dormand_prince::{Control, DEFAULT_TOLERANCE};
 use billow_solver::mechanics::gas::Gas;

@@ -1,5 +1,5 @@
 //! The order of the piston's integrator, and the film at the end of its stroke. The closed forms are
-//! reference cases of `billow validate`.
+//! reference cases of `billow-checks validate`.
 
 use billow_solver::integrators::dormand_prince::Control;
 use billow_solver::mechanics::gas::Gas;

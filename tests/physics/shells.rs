@@ -1,5 +1,5 @@
 //! Closed films at rest against closed forms, and the order of film and gas in the step. Breathing
-//! spheres are reference cases of `billow validate`.
+//! spheres are reference cases of `billow-checks validate`.
 
 use std::sync::LazyLock;
 

@@ -33,10 +33,7 @@ const ROOMS: [(&str, &[&str]); 3] = [
             "analysis", "render", "chart", "cli",
         ],
     ),
-    (
-        "tests/checks",
-        &["cases", "exact_scenes", "exact_runs", "stability", "bench", "convergence", "commands"],
-    ),
+    ("tests/checks", &["output", "cases", "exact", "stability", "bench", "convergence"]),
 ];
 
 /// Modules by path (`collision::contact::ccd`), and the paths each one names.

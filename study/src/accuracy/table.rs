@@ -1,5 +1,5 @@
 //! The table of mesh errors: how far a measure is from its value on the finest mesh, by model, mesh and kind of
-//! scene. `billow converge --table` writes it from stored results; the program contains it.
+//! scene. `billow-checks converge --table` writes it from stored results; the program contains it.
 //!
 //! ```text
 //! b = m/m_ref − 1                              bias of a mesh: median over seeds, m_ref on the finest mesh

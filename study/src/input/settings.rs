@@ -278,7 +278,7 @@ fn unknown(
     let known = table.children(prefix);
     let mut problem = format!("is not a key of {}", table.what);
     if prefix.is_empty() && name == "maps" {
-        problem.push_str("; a file of maps runs with billow stability");
+        problem.push_str("; a file of maps runs with make stability");
     } else if let Some(near) = keys::nearest(name, known.iter().copied()) {
         let _ = write!(problem, "; did you mean {near}?");
     } else if let Some(elsewhere) = table.find(name) {

@@ -1,4 +1,4 @@
-//! `billow bench`: every measurement is present and positive. No test asserts a speed.
+//! `billow-checks bench`: every measurement is present and positive. No test asserts a speed.
 
 use std::process::Output;
 

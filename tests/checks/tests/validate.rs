@@ -1,4 +1,4 @@
-//! `billow validate`: rows, names, tiers, exit codes.
+//! `billow-checks validate`: rows, names, tiers, exit codes.
 
 use std::process::Output;
 

@@ -12,10 +12,10 @@ use billow_solver::scene::timeline::Timeline;
 use billow_solver::system::FilmSystem;
 use billow_study::platform::error::Result;
 
-use super::capsule::{Capsule, Progress, RISING};
+use super::capsule::{Capsule, Progress};
 use super::reference_step::{FilmMotion, reference_step, vector_step};
 use super::stages::take_steps;
-use super::{Effort, Plan, Row};
+use super::{Effort, Plan, RISING, Row};
 use crate::cases::rig::explicit;
 
 /// Times the kernels on a mesh: the step (`step`) and the film's part of it at a fixed pressure (`film`) on every
