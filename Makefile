@@ -30,14 +30,14 @@ DIST_PACKAGES := g++ binutils git python3 python3-venv
 READER_PACKAGES := python3 python3-venv
 SLURM_PACKAGES := slurmctld slurmd slurm-client munge procps python3
 
-.PHONY: dist study paper pareto stability validate test test-all test-long torture contact-matrix readers build bench scale layers check deps dist-deps reader-deps slurm slurm-deps fresh-check
+.PHONY: dist study paper pareto stability validate test test-all test-long torture contact-matrix readers build program bench scale layers check deps dist-deps reader-deps slurm slurm-deps fresh-check
 
-study: build
+study: program
 	$(BILLOW) run studies/first.json
 	$(BILLOW) table studies/first.json
 	$(BILLOW) chart studies/first.json
 
-paper: build
+paper: program
 	studies/publish_paper.sh $(BILLOW)
 
 pareto: build
@@ -62,7 +62,7 @@ test-long: deps reader-deps
 	tests/matrix/contact.py results/contact-matrix --billow $(BILLOW) --subdivisions 5 --seeds 1
 
 # Runs it has finished are not run again.
-contact-matrix: build reader-deps
+contact-matrix: program reader-deps
 	tests/matrix/contact.py results/contact-matrix --billow $(BILLOW)
 
 # Its options, as in: make torture TORTURE="--only kill9,signals --trials 0.1 --seed 7"
@@ -70,7 +70,7 @@ torture: deps
 	$(CARGO) test --release --locked -p billow-study --test torture -- $(TORTURE)
 
 # Opens two small studies, fresh, with h5py, xarray, pandas, pyarrow and vtk.
-readers: build reader-deps
+readers: program reader-deps
 	results=$$(mktemp -d); trap 'rm -rf "$$results"' EXIT; \
 	for study in piston film; do \
 	    $(BILLOW) run tests/readers/$$study.json --results "$$results/$$study" --quiet > /dev/null; \
@@ -80,6 +80,10 @@ readers: build reader-deps
 
 build: deps
 	$(CARGO) build $(FLAGS)
+
+# The program alone, without its checks.
+program: deps
+	$(CARGO) build --release --locked -p billow-study
 
 # With the program of `make dist`, as on nodes without libhdf5. Says so where it cannot run: exit code 77 of the script.
 slurm: dist slurm-deps
@@ -92,7 +96,7 @@ bench: build
 dist: deps dist-deps
 	.ci/dist.sh
 
-scale: build
+scale: program
 	python3 tests/scale/scale.py --billow $(BILLOW) $(SCALE)
 
 # Which room imports which, and that none imports from above.
