@@ -1,6 +1,6 @@
 //! The capsule of the bench: the paper's capsule from `scenes/capsule.json`, for up to 1.5 s.
 //!
-//! It runs from the stowed shape as in `billow solve`. On its way the bench keeps states, from which stages are timed,
+//! It runs from the stowed shape as in `billow solve`. While it runs, the bench keeps states, from which stages are timed,
 //! and the cost so far.
 
 use std::path::Path;
@@ -63,7 +63,7 @@ impl Capsule {
     }
 }
 
-/// A capsule on its way, with the cost so far.
+/// A running capsule, with the cost so far.
 #[derive(Clone)]
 pub(super) struct Progress<'a> {
     capsule: &'a Capsule,

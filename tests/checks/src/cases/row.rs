@@ -99,7 +99,7 @@ impl Row {
     }
 
     /// The value of the finest of three steps or meshes, each half of the one before. The observed order of the last two
-    /// is told, and the errors of all.
+    /// is reported, and the errors of all.
     pub fn refined(quantity: &str, values: [f64; 3], reference: f64, band: f64) -> Self {
         let errors = values.map(|value| value / reference - 1.0);
         let row = Self::new(quantity, values[2], reference, band);

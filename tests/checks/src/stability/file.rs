@@ -355,7 +355,7 @@ impl Reader<'_> {
         let key = format!("{}.axes", self.key);
         if !(1..=2).contains(&given.len()) {
             let allowed = "one or two parameters with their values";
-            return Err(refuse(&key, &given.len(), "is no number of axes", allowed));
+            return Err(refuse(&key, &given.len(), "too many axes, or none", allowed));
         }
         let axis = |(name, values): (String, Vec<f64>)| {
             let key = format!("{key}.{name}");
