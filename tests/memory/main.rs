@@ -50,7 +50,7 @@ fn scene(case: &Value) -> Scene {
     let file = folder.path().join("study.json");
     fs::write(&file, study.to_string()).unwrap();
     let study = Study::load(&file, &[]).unwrap();
-    next_jobs(&study, &[]).unwrap().points[0].job.scene.clone()
+    Scene::clone(&next_jobs(&study, &[]).unwrap().points[0].job.scene)
 }
 
 /// Peaks of the run and of its static equilibria, bytes.

@@ -172,7 +172,7 @@ fn capsule_of(study: &str) -> Option<Scene> {
         let scene = &point.job.scene;
         point.infeasible.is_none() && scene.solver.model == ModelKind::Film && has_gas(scene)
     })?;
-    let mut scene = point.job.scene;
+    let mut scene = Scene::clone(&point.job.scene);
     scene.design.subdivisions = 2;
     scene.solver.end_time = END_TIME;
     Some(scene)

@@ -5,6 +5,7 @@ pub mod expression;
 pub mod fraction;
 pub mod keys;
 pub(crate) mod overrides;
+mod parts;
 pub(crate) mod plausible;
 pub mod schema;
 pub(crate) mod settings;

@@ -1,11 +1,8 @@
-//! The keys of a file that hold one value: read from its tree, defaulted, put into a draft.
+//! The values of the keys of a file that hold one value: read from its tree, with defaults.
 
 use std::fmt::Write as _;
 
-use billow_solver::scene::Species;
-
-use crate::input::keys::draft::{Draft, SpeciesDraft};
-use crate::input::keys::{self, Default, KEYS, Key, Table, named};
+use crate::input::keys::{self, Key, Named, Table, pick};
 use crate::input::plausible;
 use crate::input::source::{Source, shown};
 use crate::input::study_file::Json;
@@ -37,13 +34,13 @@ impl Settings {
     }
 
     /// The value of a key, by its position in the table.
-    pub fn value(&self, index: usize) -> &Value {
+    pub fn at(&self, index: usize) -> &Value {
         &self.values[index]
     }
 
-    /// The text of a key, by its position in the table; `None` where it has none.
-    pub fn text(&self, index: usize) -> Option<&str> {
-        match &self.values[index] {
+    /// The text of a key; `None` where it has none.
+    pub fn text(&self, path: &str) -> Option<&str> {
+        match self.value(path) {
             Value::Text(text) => Some(text),
             _ => None,
         }
@@ -82,71 +79,79 @@ impl Settings {
         Ok(())
     }
 
-    /// Puts the values of the keys that `wanted` chooses into a draft.
+    /// The value of a key by its path.
     ///
-    /// # Errors
-    /// When the file does not give a required key.
-    pub fn draft(
-        &self,
-        wanted: impl Fn(&Key) -> bool,
-        source: &Source,
-    ) -> Result<Draft, InputError> {
-        let mut draft = Draft::empty();
-        for (key, value) in self.table.keys.iter().zip(&self.values) {
-            if !wanted(key) {
-                continue;
-            }
-            if matches!((key.default, value), (Default::Required, Value::Null)) {
-                return Err(missing(self.table, key, source));
-            }
-            if let Some(store) = key.store {
-                store(&mut draft, value);
-            }
+    /// # Panics
+    /// When the table has no such key. This is a mistake in code.
+    pub fn value(&self, path: &str) -> &Value {
+        &self.values[self.position(path)]
+    }
+
+    fn position(&self, path: &str) -> usize {
+        self.table.index(path).unwrap_or_else(|| unreachable!("no key has the path {path}"))
+    }
+
+    /// A number; `None` where the key has no value.
+    pub fn number(&self, path: &str) -> Option<f64> {
+        self.value(path).number()
+    }
+
+    /// A number that the file must give, or has by default.
+    pub fn needed(&self, path: &str, source: &Source) -> Result<f64, InputError> {
+        self.number(path).ok_or_else(|| self.missing(path, source))
+    }
+
+    /// A whole number that the file must give, or has by default.
+    pub fn whole(&self, path: &str, source: &Source) -> Result<u64, InputError> {
+        match self.value(path) {
+            Value::Integer(number) => Ok(u64::try_from(*number).unwrap_or_default()),
+            _ => Err(self.missing(path, source)),
         }
-        Ok(draft)
+    }
+
+    /// A whole number of 32 bits. Every such key allows less than 2^32.
+    pub fn count(&self, path: &str, source: &Source) -> Result<u32, InputError> {
+        self.whole(path, source).map(|number| u32::try_from(number).unwrap_or_default())
+    }
+
+    /// True or false; `None` where the key has no value.
+    pub fn flag(&self, path: &str) -> Option<bool> {
+        match self.value(path) {
+            Value::Bool(flag) => Some(*flag),
+            _ => None,
+        }
+    }
+
+    /// What the word of a key stands for; `None` where it has none.
+    pub fn picked<T: Copy>(&self, path: &str, words: &[Named<T>]) -> Option<T> {
+        pick(words, self.value(path))
+    }
+
+    /// What the word of a key stands for, which the file must give, or has by default.
+    pub fn word<T: Copy>(
+        &self,
+        path: &str,
+        words: &[Named<T>],
+        source: &Source,
+    ) -> Result<T, InputError> {
+        self.picked(path, words).ok_or_else(|| self.missing(path, source))
     }
 
     /// The error of a key that the file does not give.
-    pub fn missing(&self, key: &Key, source: &Source) -> InputError {
-        missing(self.table, key, source)
+    pub fn missing(&self, path: &str, source: &Source) -> InputError {
+        let key = self.table.keys[self.position(path)];
+        let mut error = missing_key(key, source);
+        if self.table.structured.iter().any(|(path, _)| *path == "grid") {
+            error.hint = format!("give it here, or vary {} under grid", key.leaf());
+        }
+        error
     }
 }
 
-fn missing(table: &Table, key: &Key, source: &Source) -> InputError {
-    let mut error = missing_key(key, source);
-    if table.structured.iter().any(|(path, _)| *path == "grid") {
-        error.hint = format!("give it here, or vary {} under grid", key.leaf());
-    }
-    error
-}
-
-/// The error of a key that a file without a grid does not give.
-pub(crate) fn missing_key(key: &Key, source: &Source) -> InputError {
+fn missing_key(key: &Key, source: &Source) -> InputError {
     let mut error = source.error(key.path, "", "missing", key.allowed());
     error.hint = format!("give it, as in {}", key.sample());
     error
-}
-
-/// The gas of a draft: a named one, or one by its constants; a constant given in addition to a name
-/// replaces that of the named gas.
-///
-/// # Errors
-/// When a constant is missing, or cp is not above the gas constant.
-pub(crate) fn species(draft: &SpeciesDraft, source: &Source) -> Result<Species, InputError> {
-    const GAS_CONSTANT: &Key = named(KEYS, "gas.species.gas_constant");
-    const CP: &Key = named(KEYS, "gas.species.cp");
-    let gas_constant = draft.gas_constant.or(draft.named.map(|gas| gas.gas_constant));
-    let gas_constant = gas_constant.ok_or_else(|| missing_key(GAS_CONSTANT, source))?;
-    let cp = draft.cp.or(draft.named.map(|gas| gas.cp)).ok_or_else(|| missing_key(CP, source))?;
-    if cp <= gas_constant {
-        return Err(source.error(
-            CP.path,
-            &shown(cp),
-            "leaves no heat capacity at constant volume, cp - R",
-            format!("above the gas constant, {gas_constant} J/(kg K)"),
-        ));
-    }
-    Ok(Species { gas_constant, cp })
 }
 
 /// A gas given by its constants has both.

@@ -32,6 +32,14 @@ impl fmt::Display for Value {
 }
 
 impl Value {
+    /// The number it holds; `None` for a whole number, a text, …
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(*number),
+            _ => None,
+        }
+    }
+
     /// Its text for a reader: a number has six significant digits.
     pub fn short(&self) -> String {
         match self {

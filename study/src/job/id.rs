@@ -4,11 +4,15 @@
 //! id = first 16 bytes of SHA-256(canonical JSON of {physics_version, scene}), in hexadecimal digits
 //! ```
 
+use std::cell::RefCell;
 use std::fmt::{self, Write as _};
+use std::io::{self, Write};
 
 use billow_solver::PHYSICS_VERSION;
 use billow_solver::scene::Scene;
 use serde::{Deserialize, Serialize};
+use serde_json::Serializer;
+use serde_json::ser::{CompactFormatter, Formatter};
 use sha2::{Digest, Sha256};
 
 /// Bytes of the hash that an id keeps.
@@ -72,59 +76,108 @@ pub fn common_prefix_length(a: &str, b: &str) -> usize {
 /// # Panics
 /// For data that JSON cannot hold (a map with keys that are not texts). This is a mistake in code.
 pub fn canonical_json<T: Serialize>(data: &T) -> String {
-    let value = serde_json::to_value(data).unwrap_or_else(|error| unreachable!("{error}"));
-    let mut text = String::new();
-    write_canonical(&value, &mut text);
-    text
+    let text = RefCell::new(Vec::new());
+    let formatter = Canonical { text: &text, objects: Vec::new() };
+    let mut serializer = Serializer::with_formatter(Shared(&text), formatter);
+    data.serialize(&mut serializer).unwrap_or_else(|error| unreachable!("{error}"));
+    String::from_utf8(text.into_inner()).unwrap_or_else(|error| unreachable!("{error}"))
 }
 
-fn write_canonical(value: &serde_json::Value, text: &mut String) {
-    match value {
-        serde_json::Value::Number(number) => match number.as_f64() {
-            // Larger whole numbers keep their digits: different ones would be equal as floats.
-            Some(float) if float.abs() < FIRST_INEXACT_INTEGER => {
-                // −0 + 0 is 0. Display writes a whole float without a decimal point.
-                let _ = write!(text, "{}", float + 0.0);
-            }
-            _ => {
-                let _ = write!(text, "{number}");
-            }
-        },
-        serde_json::Value::Array(items) => {
-            text.push('[');
-            for (index, item) in items.iter().enumerate() {
-                text.push_str(if index > 0 { "," } else { "" });
-                write_canonical(item, text);
-            }
-            text.push(']');
+/// The text that the serializer appends to, and in which [`Canonical`] sorts.
+struct Shared<'a>(&'a RefCell<Vec<u8>>);
+
+impl Write for Shared<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.borrow_mut().extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Sorts the members of an object when it ends.
+struct Canonical<'a> {
+    text: &'a RefCell<Vec<u8>>,
+    /// For each open object the start of every member, and the end of its key.
+    objects: Vec<Vec<[usize; 2]>>,
+}
+
+impl Formatter for Canonical<'_> {
+    fn write_f64<W: ?Sized + Write>(&mut self, writer: &mut W, value: f64) -> io::Result<()> {
+        #[expect(clippy::cast_possible_truncation, reason = "whole and below 2^53")]
+        if value.abs() >= FIRST_INEXACT_INTEGER {
+            // Larger numbers keep their exponent: their digits would look like those of a whole number.
+            CompactFormatter.write_f64(writer, value)
+        } else if value.fract() == 0.0 {
+            // −0 too is written as 0.
+            CompactFormatter.write_i64(writer, value as i64)
+        } else {
+            write!(writer, "{value}")
         }
-        serde_json::Value::Object(members) => {
-            // Sorted here: the order must not depend on the map type.
-            let mut members: Vec<_> = members.iter().collect();
-            members.sort_by_key(|(key, _)| *key);
-            text.push('{');
-            for (index, (key, item)) in members.into_iter().enumerate() {
-                text.push_str(if index > 0 { "," } else { "" });
-                let _ = write!(text, "{}:", serde_json::Value::from(key.as_str()));
-                write_canonical(item, text);
+    }
+
+    fn begin_object<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.objects.push(Vec::new());
+        writer.write_all(b"{")
+    }
+
+    fn begin_object_key<W: ?Sized + Write>(&mut self, _: &mut W, _: bool) -> io::Result<()> {
+        let start = self.text.borrow().len();
+        self.objects.last_mut().into_iter().for_each(|members| members.push([start, start]));
+        Ok(())
+    }
+
+    fn end_object_key<W: ?Sized + Write>(&mut self, _: &mut W) -> io::Result<()> {
+        let member = self.objects.last_mut().and_then(|members| members.last_mut());
+        member.into_iter().for_each(|member| member[1] = self.text.borrow().len());
+        Ok(())
+    }
+
+    fn end_object<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        let starts = self.objects.pop().unwrap_or_default();
+        if let Some([first, _]) = starts.first().copied() {
+            let mut text = self.text.borrow_mut();
+            let written = text.split_off(first);
+            let ends = starts[1..].iter().map(|member| member[0] - first).chain([written.len()]);
+            let mut members: Vec<(&[u8], &[u8])> = starts
+                .iter()
+                .zip(ends)
+                .map(|([start, key], end)| {
+                    (&written[start - first..key - first], &written[start - first..end])
+                })
+                .collect();
+            members.sort_unstable_by_key(|(key, _)| *key);
+            for (index, (_, member)) in members.into_iter().enumerate() {
+                text.extend_from_slice(if index > 0 { b"," } else { b"" });
+                text.extend_from_slice(member);
             }
-            text.push('}');
         }
-        other => {
-            let _ = write!(text, "{other}");
-        }
+        writer.write_all(b"}")
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
 
     #[test]
     fn canonical_json_sorts_keys_and_shortens_numbers() {
-        let value =
-            serde_json::json!({"b": [8.0, 8, -0.0, 0.04, 25.4e-6], "a": {"y": null, "x": "é\""}});
-        let expected = r#"{"a":{"x":"é\"","y":null},"b":[8,8,0,0.04,0.0000254]}"#;
+        #[derive(Serialize)]
+        struct Unsorted {
+            b: serde_json::Value,
+            a: BTreeMap<&'static str, Option<&'static str>>,
+            ab: [f64; 4],
+        }
+        let value = Unsorted {
+            b: serde_json::json!([8, 1_u64 << 60, {}]),
+            a: BTreeMap::from([("y", None), ("x", Some("é\""))]),
+            ab: [8.0, -0.0, 25.4e-6, 1e17],
+        };
+        let expected = r#"{"a":{"x":"é\"","y":null},"ab":[8,0,0.0000254,1e+17],"b":[8,1152921504606846976,{}]}"#;
         assert_eq!(canonical_json(&value), expected);
     }
 

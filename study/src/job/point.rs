@@ -1,5 +1,7 @@
 //! A point of the grid: its job, or the reason why it has none.
 
+use std::sync::Arc;
+
 use billow_solver::geometry::fold::{FoldPattern, Nearest};
 use billow_solver::scene::Scene;
 
@@ -23,8 +25,8 @@ pub struct Job {
     pub id: JobId,
     /// The varied parameters of the point.
     pub parameters: Parameters,
-    /// All that the model reads.
-    pub scene: Scene,
+    /// All that the model reads; shared with the plan of its study.
+    pub scene: Arc<Scene>,
 }
 
 /// One point of the grid.

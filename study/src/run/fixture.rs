@@ -32,7 +32,7 @@ pub fn job(number: u32) -> Job {
             ("N".to_owned(), Value::Integer(6)),
             ("mass_flow_rate".to_owned(), Value::Number(0.001 * f64::from(number))),
         ],
-        scene: scene(number),
+        scene: scene(number).into(),
     }
 }
 

@@ -56,7 +56,7 @@ impl Base {
             }
             if given("fixed") {
                 let index = const { position(KEYS, "solver.stepping.fixed") };
-                let fixed = self.settings.value(index).clone();
+                let fixed = self.settings.at(index).clone();
                 self.settings.set(index, fixed);
             }
         }
@@ -65,7 +65,7 @@ impl Base {
 
     /// Name of the strategy.
     pub fn strategy_name(&self) -> &str {
-        self.settings.text(const { position(KEYS, "strategy") }).unwrap_or_default()
+        self.settings.text("strategy").unwrap_or_default()
     }
 
     /// Refuses a strategy that the study does not have.

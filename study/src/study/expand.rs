@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::rc::Rc;
+use std::sync::Arc;
 
 use billow_solver::models;
 use billow_solver::scene::error::SceneError;
@@ -44,8 +45,8 @@ pub(super) fn points(
     }
     let axes: Vec<&Axis> = grid.axes.iter().collect();
     let mut filtered = 0;
+    let mut point = base.clone();
     for number in 0..product {
-        let mut point = base.clone();
         set_axes(&mut point, grid, &axes, number);
         expansion.number = number;
         filtered += usize::from(!expansion.add(&point, grid.filter.as_ref())?);
@@ -198,7 +199,7 @@ impl<'a> Expansion<'a> {
     /// Adds a point, unless the filter removes it; `false` for a removed point.
     fn add(&mut self, point: &Base, filter: Option<&Expression>) -> Result<bool, InputError> {
         debug_assert_eq!(self.base.supports, point.supports, "supports are not an axis");
-        let design = resolve::design(point, self.source);
+        let design = point.settings.design(self.source);
         let design = design.map_err(|error| self.at_point(point, error))?;
         let fold = self.folds.entry(fold::design_key(&design));
         let fold = Rc::clone(fold.or_insert_with(|| Rc::new(fold::solve(&design))));
@@ -215,7 +216,7 @@ impl<'a> Expansion<'a> {
                 return Err(self.at_point(point, error));
             }
         };
-        let scene = resolve::scene(point, self.source)
+        let scene = resolve::scene(point, design, self.source)
             .and_then(|scene| match models::check(&scene) {
                 Ok(()) => Ok(scene),
                 Err(error) => Err(self.refused(&error)),
@@ -223,6 +224,7 @@ impl<'a> Expansion<'a> {
             .map_err(|error| self.at_point(point, error))?;
         let parameters = self.parameters(point);
         let (number, searched) = (self.number, self.searched);
+        let scene = Arc::new(scene);
         self.points.push(StudyPoint { parameters, number, scene, infeasible, solved, searched });
         Ok(true)
     }
@@ -252,7 +254,7 @@ impl<'a> Expansion<'a> {
         let Some(index) = keys::index(&path) else {
             return self.source.error(&path, "", problem, "");
         };
-        let value = match point.settings.value(index) {
+        let value = match point.settings.at(index) {
             Value::Null => String::new(),
             value => json_value(value).to_string(),
         };

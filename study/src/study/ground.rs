@@ -5,8 +5,7 @@ use billow_solver::geometry::mesh::{Mesh, Shape};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::scene::{GasSupply, Scene};
 
-use crate::input::keys::draft::Draft;
-use crate::input::settings::species;
+use crate::input::settings::Settings;
 use crate::input::source::{Source, shown};
 use crate::platform::error::InputError;
 
@@ -28,19 +27,26 @@ fn pressure_at_start(scene: &Scene, stowed_volume: f64) -> f64 {
 ///
 /// # Errors
 /// When the study gives a mass of residual gas too.
-pub(super) fn mass_at_ambient_pressure(draft: &Draft, source: &Source) -> Result<f64, InputError> {
-    if draft.inflow.residual_mass > 0.0 {
+pub(super) fn mass_at_ambient_pressure(
+    design: &FoldDesign,
+    settings: &Settings,
+    residual_mass: f64,
+    source: &Source,
+) -> Result<f64, InputError> {
+    if residual_mass > 0.0 {
         return Err(source.error(
             "gas.residual_gas_mass",
-            &shown(draft.inflow.residual_mass),
+            &shown(residual_mass),
             "is given beside residual_gas ambient, which follows from gas.ambient_pressure",
             "one of the two; residual_gas stored for a given mass",
         ));
     }
-    let gas_constant = species(&draft.species, source)?.gas_constant;
+    let gas_constant = settings.species(source)?.gas_constant;
     // A design without a pattern is infeasible, whatever gas it has.
-    let volume = stowed_volume(&draft.scene.design).unwrap_or(0.0);
-    Ok(draft.scene.gas.ambient_pressure * volume / (gas_constant * draft.scene.film.temperature))
+    let volume = stowed_volume(design).unwrap_or(0.0);
+    let temperature = settings.needed("film.temperature", source)?;
+    let pressure = settings.needed("gas.ambient_pressure", source)?;
+    Ok(pressure * volume / (gas_constant * temperature))
 }
 
 /// Refuses ambient pressure on a capsule without any gas inside: it would implode.

@@ -36,7 +36,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use crate::accuracy::Tolerances;
-use crate::input::keys::{KEYS, STUDY, position};
+use crate::input::keys::STUDY;
 use crate::input::overrides;
 use crate::input::source::Source;
 use crate::input::study_file::{self, Json};
@@ -231,7 +231,7 @@ impl Study {
 
     /// The limits of its jobs.
     pub fn job_limits(&self) -> JobLimits {
-        job_limits::of(|key| self.base.settings.value(key).clone())
+        job_limits::of(|key| self.base.settings.at(key).clone())
     }
 
     /// The resolved study: units converted, defaults written out, axes as lists. It is a study file
@@ -320,13 +320,13 @@ impl Study {
 
 /// The question of a study.
 fn question(base: &Base) -> String {
-    let question = base.settings.text(const { position(KEYS, "question") });
+    let question = base.settings.text("question");
     question.unwrap_or_default().to_owned()
 }
 
 /// The study's name: the given one, or that of its file; always one that a folder can have.
 fn study_name(base: &Base, stem: &str, source: &Source) -> Result<String, InputError> {
-    let given = base.settings.text(const { position(KEYS, "name") });
+    let given = base.settings.text("name");
     let name = given.unwrap_or(stem);
     let valid = !name.is_empty()
         && name.len() <= 100

@@ -5,6 +5,7 @@
 
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
+use std::sync::Arc;
 
 use crate::job::point::Point;
 use crate::job::{Job, JobId};
@@ -129,7 +130,7 @@ pub(super) fn generation(number: u32, planned: &[StudyPoint]) -> Generation {
                 let job = Job {
                     id: entry.key().clone(),
                     parameters: point.parameters.clone(),
-                    scene: point.scene.clone(),
+                    scene: Arc::clone(&point.scene),
                 };
                 entry.insert(points.len());
                 let infeasible = point.infeasible.clone();

@@ -1,5 +1,7 @@
 //! One point of the grid.
 
+use std::sync::Arc;
+
 use billow_solver::scene::Scene;
 
 use crate::accuracy::Features;
@@ -25,7 +27,7 @@ pub(crate) struct StudyPoint {
     /// Its number: [`super::sketch`].
     pub number: usize,
     /// The scene of its job.
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
     /// Why it has no job; `None` for a feasible point.
     pub infeasible: Option<Infeasible>,
     /// What the fold solves; `None` for an infeasible point.

@@ -1,61 +1,90 @@
 //! From the settings of a point to its scene.
 
 use billow_solver::geometry::fold::FoldDesign;
-use billow_solver::scene::{InflowWindow, IntegratorKind, ModelKind, Scene, Stepping};
+use billow_solver::scene::{
+    InflowWindow, IntegratorKind, ModelKind, Outputs, Scene, Solver, Stepping, Thresholds,
+};
 
 use super::base::Base;
 use super::ground;
 use super::schedule::Schedule;
 use super::strategy::{Strategy, Window};
-use crate::input::keys::draft::{Draft, SteppingDraft};
-use crate::input::keys::{self, KEYS, Key, ResidualGas, named};
-use crate::input::settings::{check_sample_interval, species};
+use crate::input::keys::{self, MODEL_KINDS, RESIDUAL_GAS, ResidualGas};
+use crate::input::settings::{Settings, check_sample_interval};
 use crate::input::source::{Source, shown};
 use crate::platform::error::InputError;
 
-/// The fold design of a point.
-///
-/// # Errors
-/// When a required key of the design is missing.
-pub(super) fn design(point: &Base, source: &Source) -> Result<FoldDesign, InputError> {
-    let of_design = |key: &Key| key.path.starts_with("design.");
-    Ok(point.settings.draft(of_design, source)?.scene.design)
-}
-
-/// The scene of a point: the draft of its keys, completed by its strategy and its model.
+/// The scene of a point: the values of its keys, completed by its strategy and its model.
 ///
 /// # Errors
 /// When a key is missing, or two keys contradict each other.
-pub(super) fn scene(point: &Base, source: &Source) -> Result<Scene, InputError> {
-    let draft = point.settings.draft(|_| true, source)?;
-    let end_time = draft.scene.solver.end_time;
-    check_sample_interval(draft.scene.outputs.sample_interval, end_time, source)?;
+pub(super) fn scene(
+    point: &Base,
+    design: FoldDesign,
+    source: &Source,
+) -> Result<Scene, InputError> {
+    let settings = &point.settings;
+    let film = settings.film(source)?;
+    let model = settings.word("solver.model", &MODEL_KINDS, source)?;
+    let end_time = settings.needed("solver.end_time", source)?;
+    let sample_interval = settings.needed("outputs.sample_interval", source)?;
+    check_sample_interval(sample_interval, end_time, source)?;
     let name = point.strategy_name();
     let Some(strategy) = point.strategies.get(name) else {
         point.check_strategy(name, "strategy", source)?;
-        return Err(point.settings.missing(const { named(KEYS, "strategy") }, source));
+        return Err(settings.missing("strategy", source));
     };
     check_release(name, strategy, end_time, source)?;
-    let windows = Windows { point, name, strategy, draft: &draft, source };
-    let windows = windows.resolve()?;
-    let burst = (burst_mass(&draft), draft.inflow.burst_rate);
-    let mut scene = draft.scene.clone();
-    scene.gas.species = species(&draft.species, source)?;
-    scene.gas.initial_mass = strategy.preinflation_mass() + stored_mass(&draft, source)?;
-    ground::check_gas_inside(&scene.gas, source)?;
-    scene.gas.windows = windows;
-    scene.supports.clone_from(&point.supports);
-    scene.release_time = strategy.release_time();
-    scene.solver.stepping = stepping(scene.solver.model, &draft.stepping, point, source)?;
-    if !keys::model(scene.solver.model).has_film {
-        // Equal physics gives an equal job, whatever is asked for that the model does not have.
-        scene.outputs.frames = 0;
-        scene.solver.integrator = IntegratorKind::default();
-    }
-    if scene.seed == 0 {
+    let inflow = Inflow::of(point, source)?;
+    let windows = Windows { point, name, strategy, inflow: &inflow, end_time, source };
+    let stored_mass = match inflow.residual {
+        ResidualGas::Burst => 0.0,
+        ResidualGas::Stored => inflow.residual_mass,
+        ResidualGas::Ambient => {
+            ground::mass_at_ambient_pressure(&design, settings, inflow.residual_mass, source)?
+        }
+    };
+    let initial_mass = strategy.preinflation_mass() + stored_mass;
+    let gas = settings.gas(initial_mass, windows.resolve()?, source)?;
+    ground::check_gas_inside(&gas, source)?;
+    let has_film = keys::model(model).has_film;
+    let seed = settings.whole("seed", source)?;
+    let scene = Scene {
+        design,
+        film,
+        gas,
+        supports: point.supports.clone(),
+        contact: settings.contact(source)?,
+        gravity: settings.needed("gravity", source)?,
+        release_time: strategy.release_time(),
+        solver: Solver {
+            model,
+            end_time,
+            // Equal physics gives an equal job, whatever is asked for that the model does not have.
+            integrator: if has_film {
+                settings.integrator(source)?
+            } else {
+                IntegratorKind::default()
+            },
+            stepping: stepping(model, settings, source)?,
+            step_limit: settings.whole("solver.step_limit", source)?,
+        },
+        outputs: Outputs {
+            sample_interval,
+            frames: if has_film { settings.count("outputs.frames", source)? } else { 0 },
+            thresholds: Thresholds {
+                deployed_volume: settings.needed("outputs.thresholds.deployed_volume", source)?,
+                deployed_height: settings.needed("outputs.thresholds.deployed_height", source)?,
+                stalled_volume: settings.needed("outputs.thresholds.stalled_volume", source)?,
+                near_threshold_margin: settings
+                    .needed("outputs.thresholds.near_threshold_margin", source)?,
+            },
+        },
+        seed,
         // Without an imperfection its amplitude is not physics.
-        scene.imperfection_amplitude = None;
-    }
+        imperfection_amplitude: settings.number("imperfection_amplitude").filter(|_| seed > 0),
+    };
+    let burst = (inflow.burst_mass(), inflow.burst_rate);
     Schedule { point, scene: &scene, burst, source }.check();
     Ok(scene)
 }
@@ -79,42 +108,54 @@ fn check_release(
     ))
 }
 
-/// Residual gas inside from the start, kg.
-fn stored_mass(draft: &Draft, source: &Source) -> Result<f64, InputError> {
-    Ok(match draft.inflow.residual {
-        ResidualGas::Burst => 0.0,
-        ResidualGas::Stored => draft.inflow.residual_mass,
-        ResidualGas::Ambient => ground::mass_at_ambient_pressure(draft, source)?,
-    })
+/// Residual gas, and what a study lets in where a window does not say otherwise.
+struct Inflow {
+    /// Temperature of a window that gives none, K.
+    temperature: f64,
+    /// Residual gas, kg.
+    residual_mass: f64,
+    /// How residual gas enters.
+    residual: ResidualGas,
+    /// Mass flow rate of a burst, kg/s.
+    burst_rate: f64,
 }
 
-/// Residual gas let in as a burst, kg.
-fn burst_mass(draft: &Draft) -> f64 {
-    if draft.inflow.residual == ResidualGas::Burst { draft.inflow.residual_mass } else { 0.0 }
+impl Inflow {
+    fn of(point: &Base, source: &Source) -> Result<Self, InputError> {
+        let settings = &point.settings;
+        Ok(Self {
+            temperature: settings.needed("gas.inflow_temperature", source)?,
+            residual_mass: settings.needed("gas.residual_gas_mass", source)?,
+            residual: settings.word("gas.residual_gas", &RESIDUAL_GAS, source)?,
+            burst_rate: settings.needed("gas.burst_rate", source)?,
+        })
+    }
+
+    /// Residual gas let in as a burst, kg.
+    fn burst_mass(&self) -> f64 {
+        if self.residual == ResidualGas::Burst { self.residual_mass } else { 0.0 }
+    }
 }
 
 /// How a model chooses its step.
 fn stepping(
     model: ModelKind,
-    draft: &SteppingDraft,
-    point: &Base,
+    settings: &Settings,
     source: &Source,
 ) -> Result<Stepping, InputError> {
-    const FIXED: &Key = named(KEYS, "solver.stepping.fixed");
-    const ADAPTIVE: &Key = named(KEYS, "solver.stepping.adaptive");
-    match (keys::model(model).has_stable_step, draft.fixed) {
+    const FIXED: &str = "solver.stepping.fixed";
+    match (keys::model(model).has_stable_step, settings.number(FIXED)) {
         (true, Some(step)) => Err(source.error(
-            FIXED.path,
+            FIXED,
             &shown(step),
             "the models storeys and film take a fraction of their stable step",
             "solver.cfl in its place; only the model piston takes a fixed step",
         )),
-        (true, None) => Ok(Stepping::Stable(draft.cfl)),
+        (true, None) => settings.needed("solver.cfl", source).map(Stepping::Stable),
         (false, Some(step)) => Ok(Stepping::Fixed(step)),
-        (false, None) => match draft.adaptive {
-            Some(tolerance) => Ok(Stepping::Adaptive(tolerance)),
-            None => Err(point.settings.missing(ADAPTIVE, source)),
-        },
+        (false, None) => {
+            settings.needed("solver.stepping.adaptive", source).map(Stepping::Adaptive)
+        }
     }
 }
 
@@ -124,7 +165,9 @@ struct Windows<'a> {
     /// Name of the strategy.
     name: &'a str,
     strategy: &'a Strategy,
-    draft: &'a Draft,
+    inflow: &'a Inflow,
+    /// End of the run, s.
+    end_time: f64,
     source: &'a Source,
 }
 
@@ -132,13 +175,12 @@ impl Windows<'_> {
     /// Inflow windows in order of time. Windows without inflow before the end are left out, and
     /// windows that last beyond the end are cut there, so that equal physics gives an equal job.
     fn resolve(&self) -> Result<Vec<InflowWindow>, InputError> {
-        let end_time = self.draft.scene.solver.end_time;
         let mut windows = self.burst();
         for (index, window) in self.strategy.windows().enumerate() {
             windows.push(self.window(index, &window)?);
         }
         for window in &mut windows {
-            window.to = window.to.min(end_time);
+            window.to = window.to.min(self.end_time);
         }
         windows.retain(|window| window.mass_flow_rate > 0.0 && window.from < window.to);
         windows.sort_by(|a, b| {
@@ -153,29 +195,27 @@ impl Windows<'_> {
 
     /// The burst of residual gas from release on.
     fn burst(&self) -> Vec<InflowWindow> {
-        let mass = burst_mass(self.draft);
+        let mass = self.inflow.burst_mass();
         if mass <= 0.0 {
             return Vec::new();
         }
         let release_time = self.strategy.release_time();
-        let rate = self.draft.inflow.burst_rate;
+        let rate = self.inflow.burst_rate;
         vec![InflowWindow {
             from: release_time,
             to: release_time + mass / rate,
             mass_flow_rate: rate,
-            temperature: self.draft.inflow.temperature,
+            temperature: self.inflow.temperature,
         }]
     }
 
     /// One window of the strategy, with the study's values where it gives none.
     fn window(&self, index: usize, window: &Window) -> Result<InflowWindow, InputError> {
         let from = window.from.unwrap_or(self.strategy.release_time());
-        let rate = window.mass_flow_rate.or(self.draft.inflow.mass_flow_rate);
-        let rate = rate.ok_or_else(|| {
-            let key = const { named(KEYS, "gas.mass_flow_rate") };
-            self.point.settings.missing(key, self.source)
-        })?;
-        let end_time = self.draft.scene.solver.end_time.max(from);
+        let rate = match window.mass_flow_rate {
+            Some(rate) => rate,
+            None => self.point.settings.needed("gas.mass_flow_rate", self.source)?,
+        };
         let to = match (window.to, window.mass) {
             (Some(_), Some(mass)) => {
                 return Err(self.source.error(
@@ -187,7 +227,7 @@ impl Windows<'_> {
             }
             (Some(to), None) => to,
             (None, Some(mass)) if rate > 0.0 => from + mass / rate,
-            (None, _) => end_time,
+            (None, _) => self.end_time.max(from),
         };
         if to <= from && (to < from || window.to.is_some()) {
             return Err(self.source.error(
@@ -197,7 +237,69 @@ impl Windows<'_> {
                 format!("above its `from`, {} s", shown(from)),
             ));
         }
-        let temperature = window.temperature.unwrap_or(self.draft.inflow.temperature);
+        let temperature = window.temperature.unwrap_or(self.inflow.temperature);
         Ok(InflowWindow { from, to, mass_flow_rate: rate, temperature })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::keys::{KEYS, KeyKind};
+    use crate::input::study_file::parse;
+    use crate::input::value::Value;
+
+    const TEXT: &str = r#"{
+        "design": {"fit": "height", "N": 6, "M": 3, "bottom_radius": 0.5, "height": 1, "alpha1_over_phi": 0.8},
+        "gas": {"mass_flow_rate": 0.002, "residual_gas_mass": 1e-4, "ambient_pressure": 10,
+                "species": {"gas_constant": 300, "cp": 1000}},
+        "strategies": {"filled": {"preinflation_mass": 1e-4}, "direct": {"preinflation_mass": 1e-4}},
+        "strategy": "filled",
+        "solver": {"end_time": 0.3, "model": "film"},
+        "imperfection_amplitude": 1e-4, "seed": 1
+    }"#;
+
+    fn base(model: &str) -> Base {
+        let text = TEXT.replace("film\"}", &format!("{model}\"}}"));
+        Base::read(&parse(&text, "a").unwrap(), &Source::new("a")).unwrap()
+    }
+
+    fn scene_of(point: &Base) -> Scene {
+        let source = Source::new("a");
+        scene(point, point.settings.design(&source).unwrap(), &source).unwrap()
+    }
+
+    #[test]
+    fn every_key_arrives_in_the_scene() {
+        /// Keys that are no part of a scene, and one that has a single word.
+        const OTHERS: [&str; 5] = ["format", "version", "name", "question", "design.caps"];
+        for (index, key) in KEYS.iter().enumerate() {
+            if OTHERS.contains(&key.path) || key.path.starts_with("job_limits.") {
+                continue;
+            }
+            let stepping = key.path.starts_with("solver.stepping.");
+            let before = base(if stepping { "piston" } else { "film" });
+            let mut after = before.clone();
+            let other = match (key.kind, before.settings.at(index)) {
+                (_, Value::Integer(number)) => Value::Integer(number + 1),
+                (_, Value::Number(number)) => Value::Number(0.9 * number + 1e-3),
+                (KeyKind::Choice(words), given) => {
+                    let mut others =
+                        words.iter().filter(|word| Value::Text(word.name.to_owned()) != *given);
+                    Value::Text(others.next().unwrap().name.to_owned())
+                }
+                (_, Value::Text(_)) => Value::Text("direct".to_owned()),
+                _ => key.read(&parse(key.example, "a").unwrap()).unwrap(),
+            };
+            if key.path == "strategy" {
+                after.strategies.insert("direct".to_owned(), Strategy::direct());
+                after.settings.set(
+                    KEYS.iter().position(|key| key.path == "gas.ambient_pressure").unwrap(),
+                    Value::Number(0.0),
+                );
+            }
+            after.settings.set(index, other);
+            assert_ne!(scene_of(&before), scene_of(&after), "{}", key.path);
+        }
     }
 }

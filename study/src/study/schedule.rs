@@ -5,7 +5,7 @@ use billow_solver::scene::Scene;
 
 use super::base::Base;
 use super::strategy::Strategy;
-use crate::input::keys::{KEYS, Key, named, position};
+use crate::input::keys::{KEYS, Key, named};
 use crate::input::plausible::{Implausible, MIN_SAMPLES};
 use crate::input::source::{Source, shown};
 use crate::input::value::{Value, brief_number};
@@ -38,14 +38,6 @@ impl Schedule<'_> {
         self.check_samples();
     }
 
-    /// The rate of windows that give none, kg/s.
-    fn mass_flow_rate(&self) -> Option<f64> {
-        match self.point.settings.value(const { position(KEYS, "gas.mass_flow_rate") }) {
-            Value::Number(rate) => Some(*rate),
-            _ => None,
-        }
-    }
-
     fn end_time(&self) -> f64 {
         self.scene.solver.end_time
     }
@@ -71,7 +63,10 @@ impl Schedule<'_> {
                 self.warn(&format!("{path}.from"), &seconds(from), problem, next);
                 continue;
             }
-            let rate = window.mass_flow_rate.or(self.mass_flow_rate()).filter(|rate| *rate > 0.0);
+            let rate = window
+                .mass_flow_rate
+                .or(self.point.settings.number("gas.mass_flow_rate"))
+                .filter(|rate| *rate > 0.0);
             let of_mass = window.mass.zip(rate).map(|(mass, rate)| from + mass / rate);
             if let Some(to) = window.to.or(of_mass).filter(|to| *to > end) {
                 let problem = format!(

@@ -45,7 +45,7 @@ impl Target {
     /// The value at a point.
     pub fn value(&self, point: &Base) -> Value {
         match self {
-            Self::Key(index) => point.settings.value(*index).clone(),
+            Self::Key(index) => point.settings.at(*index).clone(),
             Self::Strategy(name, index) => point
                 .strategies
                 .get(name)

@@ -41,7 +41,7 @@ impl Named<'_> {
 
     fn value(&self, point: &Base) -> Value {
         match self {
-            Self::Key(index) => point.settings.value(*index).clone(),
+            Self::Key(index) => point.settings.at(*index).clone(),
             Self::Column(column) => column.target.value(point),
         }
     }
@@ -118,7 +118,7 @@ pub(super) fn values(columns: &[Column], point: &Base, fold: &Fold) -> Vec<Value
             ];
             values.extend(ASKED.map(|index| match index {
                 NONE => Value::Null,
-                index => point.settings.value(index).clone(),
+                index => point.settings.at(index).clone(),
             }));
         }
     }

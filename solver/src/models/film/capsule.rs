@@ -29,28 +29,38 @@ const AMPLITUDE_SUBDIVISIONS: u32 = 8;
 ///
 /// # Errors
 /// If the design has no pattern.
-pub fn imperfect(mesh: &mut Mesh, scene: &Scene) -> Result<Option<f64>, SceneError> {
-    let amplitude = imperfection_amplitude(scene)?;
+pub fn imperfect(
+    mesh: &mut Mesh,
+    design: &FoldDesign,
+    seed: u64,
+    amplitude: Option<f64>,
+) -> Result<Option<f64>, SceneError> {
+    let amplitude = imperfection_amplitude(design, seed, amplitude)?;
     if let Some(amplitude) = amplitude {
-        let stowed = Shape::Stowed(scene.design.stowed_height);
-        let pattern = FoldPattern::new(&scene.design)?;
+        let stowed = Shape::Stowed(design.stowed_height);
+        let pattern = FoldPattern::new(design)?;
         let reference = Mesh::new(&pattern, AMPLITUDE_SUBDIVISIONS, stowed)?.positions;
-        imperfection::imperfect(&mut mesh.positions, &reference, scene.seed, amplitude);
+        imperfection::imperfect(&mut mesh.positions, &reference, seed, amplitude);
     }
     Ok(amplitude)
 }
 
-/// Amplitude of the imperfection of a scene's stowed capsule, m; `None` for seed 0.
+/// Amplitude of the imperfection of a stowed capsule, m: the given one, or the default of the design;
+/// `None` for seed 0.
 ///
 /// # Errors
 /// If the design has no pattern.
-pub fn imperfection_amplitude(scene: &Scene) -> Result<Option<f64>, SceneError> {
-    if scene.seed == 0 {
+pub fn imperfection_amplitude(
+    design: &FoldDesign,
+    seed: u64,
+    given: Option<f64>,
+) -> Result<Option<f64>, SceneError> {
+    if seed == 0 {
         return Ok(None);
     }
-    Ok(Some(match scene.imperfection_amplitude {
+    Ok(Some(match given {
         Some(amplitude) => amplitude,
-        None => reference_gap::imperfection_amplitude(&scene.design)?,
+        None => reference_gap::imperfection_amplitude(design)?,
     }))
 }
 
@@ -96,7 +106,7 @@ pub fn film_scene(
     let pattern = FoldPattern::new(&scene.design)?;
     let mut mesh = Mesh::new(&pattern, scene.design.subdivisions, shape)?;
     if matches!(shape, Shape::Stowed(_)) {
-        imperfect(&mut mesh, scene)?;
+        imperfect(&mut mesh, &scene.design, scene.seed, scene.imperfection_amplitude)?;
     }
     let film = FilmScene {
         shell: Shell::of_mesh(&mesh),

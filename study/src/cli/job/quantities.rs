@@ -23,7 +23,7 @@ impl Inspected {
         let is_stored = stored.record(id).is_some_and(|record| record.file_hash.is_some());
         let scene = match stored.point(id) {
             Some(point) if !is_stored && point.job.id == *id => {
-                serde_json::to_value(&point.job.scene)
+                serde_json::to_value(&*point.job.scene)
             }
             _ => serde_json::from_str(&self.history()?.scene),
         };

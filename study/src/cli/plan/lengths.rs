@@ -48,7 +48,10 @@ pub(super) fn in_use(points: &[&Point]) -> Option<String> {
 /// Contact distance and amplitude of the imperfection of a scene, m.
 fn lengths(scene: &Scene) -> Option<[Option<f64>; 2]> {
     let distance = contact_distance(scene.contact.distance, &scene.design).ok()?;
-    Some([Some(distance), imperfection_amplitude(scene).ok()?])
+    Some([
+        Some(distance),
+        imperfection_amplitude(&scene.design, scene.seed, scene.imperfection_amplitude).ok()?,
+    ])
 }
 
 /// The smallest and the largest of these values (m), or the one value; `None` without any.

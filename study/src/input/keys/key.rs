@@ -1,17 +1,13 @@
-//! One key of a file: its name, what it may hold, its default, its meaning, and where its value goes.
+//! One key of a file: its name, what it may hold, its default, its meaning.
 
 use std::fmt::Write as _;
 
-use super::draft::Draft;
 use super::quantity::{Quantity, integer};
 use super::words::Word;
 use crate::input::study_file::Json;
 use crate::input::units::Dimension;
 use crate::input::value::Value;
 use crate::platform::nearest::nearest;
-
-/// Puts the value of a key into its field of the draft.
-pub type Store = fn(&mut Draft, &Value);
 
 /// One key that holds one value: one row of a table of keys.
 #[derive(Debug, Clone, Copy)]
@@ -26,9 +22,6 @@ pub struct Key {
     pub doc: &'static str,
     /// A value as a user writes it, JSON.
     pub example: &'static str,
-    /// Where its value goes. `None` for the keys of an object in a list (a support, a plate), which
-    /// the reader of that object asks for.
-    pub store: Option<Store>,
     /// Whether only a study file has the key; a scene file has it as well otherwise.
     pub study_only: bool,
     /// Paths of the keys that lose their value when this one is set.
@@ -76,7 +69,7 @@ pub struct Refusal {
     pub allowed: String,
 }
 
-/// A row of a table. [`Key::to`] adds where its value goes.
+/// A row of a table.
 pub(super) const fn key(
     path: &'static str,
     kind: KeyKind,
@@ -84,7 +77,7 @@ pub(super) const fn key(
     example: &'static str,
     doc: &'static str,
 ) -> Key {
-    Key { path, kind, default, doc, example, store: None, study_only: false, excludes: &[] }
+    Key { path, kind, default, doc, example, study_only: false, excludes: &[] }
 }
 
 /// A quantity from `min` to `max`, both allowed.
@@ -160,11 +153,6 @@ pub(super) const fn same_text(a: &str, b: &str) -> bool {
 }
 
 impl Key {
-    /// The same key, with the field its value goes to.
-    pub(super) const fn to(self, store: Store) -> Self {
-        Self { store: Some(store), ..self }
-    }
-
     /// The same key, for study files only.
     pub(super) const fn study_only(self) -> Self {
         Self { study_only: true, ..self }

@@ -2,7 +2,6 @@
 //! errors, defaults, `billow keys --schema`, `billow keys`, docs/reference/keys.md and the names of an
 //! expression follow.
 
-pub mod draft;
 mod key;
 pub mod listing;
 pub mod numerical;
@@ -27,7 +26,10 @@ pub use strategy::{CAPSULE_SUPPORT_KEYS, STRATEGY_KEYS, WINDOW_KEYS};
 pub(crate) use study::GRID_MEANINGS;
 pub use study::{KEYS, SECTIONS};
 pub use table::{SCENE, STUDY, Table, find, index, short_name};
-pub(crate) use words::{CAPS, CHIRALITIES, FITS, Named, PROFILES, SUPPORT_PLACES};
+pub(crate) use words::{
+    CAPS, CHIRALITIES, FITS, INTEGRATORS, ISOTHERMAL, MODEL_KINDS, Named, PROFILES, RESIDUAL_GAS,
+    SHAPES, SPECIES, SUPPORT_PLACES, pick,
+};
 pub use words::{
     MODELS, Model, ResidualGas, Word, default_integrator, ignored_by_integrator, model,
 };

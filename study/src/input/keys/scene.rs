@@ -1,10 +1,9 @@
 //! The keys of a scene file: those it shares with a study, and those of its own sections.
 
-use super::draft::{choose, flag, number, optional};
 use super::key::Default::{Absent, Integer, Number, Word};
 use super::key::{Key, KeyKind, above, from, key, likely};
 use super::study::{CLOCK, END_TIME, KELVIN};
-use super::words::{CAPS, SHAPES, pick, plain, words};
+use super::words::{CAPS, SHAPES, plain, words};
 use crate::input::units::Dimension;
 
 /// The objects of a scene file that hold single values, in the order of the documentation.
@@ -48,47 +47,35 @@ pub(super) static SCENE_KEYS: &[Key] = &[
         "Version of the file format; a newer one is refused."),
     key("release_time", CLOCK, Number(0.0), "\"1 s\"",
         "Time until which the film is packed: between a base and a lid at the contact distance from \
-        it or, without contact, with every node fixed at its start.")
-        .to(|draft, value| draft.scene.release_time = number(value)),
+        it or, without contact, with every node fixed at its start."),
 
     key("design.caps", KeyKind::Choice(&words(&CAPS)), Word("polygon"), "\"polygon\"",
-        "Shape of the end caps.")
-        .to(|draft, value| choose(&mut draft.scene.design.caps, &CAPS, value)),
+        "Shape of the end caps."),
     key("design.shape", KeyKind::Choice(&words(&SHAPES)),
         Absent("stowed; erected where solver.static is true"), "\"erected\"",
-        "Shape of the capsule at the start.")
-        .to(|draft, value| draft.film_scene.erected = pick(&SHAPES, value)),
+        "Shape of the capsule at the start."),
 
     key("gas.pressure", likely(from(Dimension::Pressure, -1e9, 1e9), -1e7, 1e7), Absent("the gas decides"),
         "\"1 kPa\"", "A fixed overpressure that follows the surface, in place of a gas; the film may \
-        be open.")
-        .to(|draft, value| draft.film_scene.pressure = optional(value)),
+        be open."),
     key("gas.initial_mass", likely(from(Dimension::Mass, 0.0, 1e6), 0.0, 0.1),
-        Absent("that of initial_pressure, else none"), "\"0.05 g\"", "Gas inside at the start.")
-        .to(|draft, value| draft.film_scene.initial_mass = optional(value)),
+        Absent("that of initial_pressure, else none"), "\"0.05 g\"", "Gas inside at the start."),
     key("gas.initial_pressure", likely(from(Dimension::Pressure, 0.0, 1e9), 0.0, 1e7),
         Absent("that of initial_mass"), "\"1 kPa\"",
-        "Absolute pressure inside at the start, in place of initial_mass.")
-        .to(|draft, value| draft.film_scene.initial_pressure = optional(value)),
+        "Absolute pressure inside at the start, in place of initial_mass."),
     key("gas.initial_temperature", KELVIN, Absent("film.temperature"), "\"293 K\"",
-        "Temperature of the gas inside at the start.")
-        .to(|draft, value| draft.film_scene.initial_temperature = optional(value)),
+        "Temperature of the gas inside at the start."),
 
     key("contact.enabled", KeyKind::Flag, Absent("true; false where solver.static is true"), "true",
-        "Whether contact keeps film from passing through film; without it, passages are not counted.")
-        .to(|draft, value| draft.film_scene.contact = flag(value)),
+        "Whether contact keeps film from passing through film; without it, passages are not counted."),
     key("contact.adhesion_range", likely(above(Dimension::Length, 0.0, 0.1), 1e-6, 0.02),
         Absent("contact.distance"), "\"1 mm\"",
-        "Range of adhesion beyond the contact distance.")
-        .to(|draft, value| draft.film_scene.adhesion_range = optional(value)),
+        "Range of adhesion beyond the contact distance."),
 
     key("solver.end_time", END_TIME, Absent("needed unless static"),
-        "\"0.3 s\"", "Simulated time.")
-        .to(|draft, value| draft.film_scene.end_time = optional(value)),
+        "\"0.3 s\"", "Simulated time."),
     key("solver.static", KeyKind::Flag, Absent("false"), "true",
-        "Solve static equilibrium under gas.pressure instead of motion.")
-        .to(|draft, value| draft.film_scene.statics = flag(value) == Some(true)),
+        "Solve static equilibrium under gas.pressure instead of motion."),
     key("solver.mass_damping", likely(from(Dimension::Frequency, 0.0, 1e9), 0.0, 1e6), Number(0.0), "\"10 1/s\"",
-        "Mass damping c in m a = f - c m v.")
-        .to(|draft, value| draft.film_scene.mass_damping = number(value)),
+        "Mass damping c in m a = f - c m v."),
 ];

@@ -8,12 +8,12 @@ use billow_solver::integrators::dormand_prince::DEFAULT_TOLERANCE;
 use billow_solver::scene::DEFAULT_CFL;
 use billow_solver::scene::paper::{LOSS_FACTOR, LOSS_FREQUENCY, NUMERICAL_DAMPING};
 
-use super::draft::{HEAT_TRANSFER_WORDS, choose, heat_transfer, number, optional, unsigned, whole};
 use super::key::Default::{Absent, Integer, Number, Required, Word};
 use super::key::{Key, KeyKind, above, from, key, likely};
 use super::quantity::Quantity;
 use super::words::{
-    CAPS, CHIRALITIES, FITS, INTEGRATORS, MODEL_KINDS, RESIDUAL_GAS, SPECIES, pick, plain, words,
+    CAPS, CHIRALITIES, FITS, HEAT_TRANSFER_WORDS, INTEGRATORS, MODEL_KINDS, RESIDUAL_GAS, SPECIES,
+    plain, words,
 };
 use crate::input::units::Dimension;
 
@@ -118,104 +118,74 @@ pub static KEYS: &[Key] = &[
         .study_only(),
 
     key("design.fit", KeyKind::Choice(&words(&FITS)), Word("cone"), "\"height\"",
-        "Which quantities of the fold are given, and which follow.")
-        .to(|draft, value| choose(&mut draft.scene.design.fit, &FITS, value)),
-    key("design.N", KeyKind::Integer(4, 1000), Required, "6", "Number of panels of a ring.")
-        .to(|draft, value| draft.scene.design.panels = whole(value)),
-    key("design.M", KeyKind::Integer(1, 1000), Required, "3", "Number of storeys.")
-        .to(|draft, value| draft.scene.design.storeys = whole(value)),
-    key("design.bottom_radius", RADIUS, Required, "\"500 mm\"", "Radius of the bottom ring, r2.")
-        .to(|draft, value| draft.scene.design.bottom_radius = number(value)),
+        "Which quantities of the fold are given, and which follow."),
+    key("design.N", KeyKind::Integer(4, 1000), Required, "6", "Number of panels of a ring."),
+    key("design.M", KeyKind::Integer(1, 1000), Required, "3", "Number of storeys."),
+    key("design.bottom_radius", RADIUS, Required, "\"500 mm\"", "Radius of the bottom ring, r2."),
     key("design.top_radius", RADIUS, Absent("follows from the fit, where the fit allows"),
-        "\"365 mm\"", "Radius of the top ring, r1: for cone, and nominal for angles.")
-        .to(|draft, value| draft.scene.design.top_radius = optional(value)),
+        "\"365 mm\"", "Radius of the top ring, r1: for cone, and nominal for angles."),
     key("design.height", RADIUS, Absent("follows from the fit, where the fit allows"), "\"1 m\"",
-        "Height of the erected cone, H: for cone and height, and nominal for angles.")
-        .to(|draft, value| draft.scene.design.height = optional(value)),
+        "Height of the erected cone, H: for cone and height, and nominal for angles."),
     key("design.half_angle", likely(from(Dimension::Angle, -1.57, 1.57), -1.3, 1.3),
         Absent("follows from the fit, or from top_radius and height"), "\"7.7 deg\"",
-        "Half top angle: for angles, in place of top_radius and height.")
-        .to(|draft, value| draft.scene.design.half_angle = optional(value)),
+        "Half top angle: for angles, in place of top_radius and height."),
     key("design.alpha1_over_phi", above(Dimension::Number, 0.0, 100.0),
         Absent("follows from the fit, where the fit allows"), "1",
-        "Ratio of the angles alpha1 and phi of a panel: for angles and height.")
-        .to(|draft, value| draft.scene.design.alpha1_over_phi = optional(value)),
+        "Ratio of the angles alpha1 and phi of a panel: for angles and height."),
     key("design.stowed_height", likely(above(Dimension::Length, 0.0, 10.0), 1e-3, 1.0), Number(0.04), "\"40 mm\"",
-        "Height of the stowed stack.")
-        .to(|draft, value| draft.scene.design.stowed_height = number(value)),
+        "Height of the stowed stack."),
     key("design.subdivisions", KeyKind::Integer(1, 1000), Integer(8), "8",
-        "Mesh subdivisions of every facet edge. Models without a mesh ignore it.")
-        .to(|draft, value| draft.scene.design.subdivisions = whole(value)),
+        "Mesh subdivisions of every facet edge. Models without a mesh ignore it."),
     key("design.chirality", KeyKind::Choice(&words(&CHIRALITIES)), Word("same"), "\"alternate\"",
-        "Turning direction of successive storeys.")
-        .to(|draft, value| choose(&mut draft.scene.design.chirality, &CHIRALITIES, value)),
+        "Turning direction of successive storeys."),
     key("design.caps", KeyKind::Choice(&[words(&CAPS)[0]]), Word("polygon"), "\"polygon\"",
         "Shape of the end caps.")
-        .to(|draft, value| choose(&mut draft.scene.design.caps, &CAPS, value))
         .study_only(),
 
     key("film.youngs_modulus", likely(from(Dimension::Pressure, 1e3, 1e13), 1e5, 1e12), Number(3.45e9),
-        "\"3.45 GPa\"", "Young's modulus, E.")
-        .to(|draft, value| draft.scene.film.youngs_modulus = number(value)),
+        "\"3.45 GPa\"", "Young's modulus, E."),
     key("film.poisson_ratio", from(Dimension::Number, 0.0, 0.499), Number(0.3), "0.3",
-        "Poisson's ratio.")
-        .to(|draft, value| draft.scene.film.poisson_ratio = number(value)),
+        "Poisson's ratio."),
     key("film.density", likely(from(Dimension::Density, 1.0, 30_000.0), 100.0, 20_000.0), Number(1400.0),
-        "\"1400 kg/m3\"", "Density.")
-        .to(|draft, value| draft.scene.film.density = number(value)),
+        "\"1400 kg/m3\"", "Density."),
     key("film.thickness", likely(from(Dimension::Length, 1e-7, 0.01), 1e-6, 2e-3), Number(25.4e-6), "\"25.4 um\"",
-        "Thickness.")
-        .to(|draft, value| draft.scene.film.thickness = number(value)),
+        "Thickness."),
     key("film.compression", from(Dimension::Number, 0.0, 1.0), Number(0.0), "0",
-        "Compression fraction c: 0 is the tension field, 1 the full membrane stiffness.")
-        .to(|draft, value| draft.scene.film.compression = number(value)),
+        "Compression fraction c: 0 is the tension field, 1 the full membrane stiffness."),
     key("film.loss_factor", from(Dimension::Number, 0.0, 0.5), Number(LOSS_FACTOR), "0.01",
-        "Largest loss factor (tan delta) of the film's material. The default is assumed; polyimide: 0.003 to 0.03.")
-        .to(|draft, value| draft.scene.film.loss_factor = number(value)),
+        "Largest loss factor (tan delta) of the film's material. The default is assumed; polyimide: 0.003 to 0.03."),
     key("film.loss_frequency", likely(from(Dimension::Frequency, 0.1, 10_000.0), 0.1, 10_000.0), Number(LOSS_FREQUENCY),
-        "\"100 Hz\"", "Frequency of the largest loss factor; the loss falls above and below it.")
-        .to(|draft, value| draft.scene.film.loss_frequency = number(value)),
+        "\"100 Hz\"", "Frequency of the largest loss factor; the loss falls above and below it."),
     key("film.numerical_damping", from(Dimension::Number, 0.0, 1.0), Number(NUMERICAL_DAMPING),
-        "1e-4", "Numerical damping ratio of an element's highest mode while it carries tension; no film property.")
-        .to(|draft, value| draft.scene.film.numerical_damping = number(value)),
-    key("film.temperature", KELVIN, Number(293.0), "\"293 K\"", "Film temperature, constant.")
-        .to(|draft, value| draft.scene.film.temperature = number(value)),
+        "1e-4", "Numerical damping ratio of an element's highest mode while it carries tension; no film property."),
+    key("film.temperature", KELVIN, Number(293.0), "\"293 K\"", "Film temperature, constant."),
 
     key("gas.species", KeyKind::Choice(&words(&SPECIES)), Word("nitrogen"), "\"nitrogen\"",
         "The gas: a name, or an object of gas_constant and cp.")
-        .to(|draft, value| draft.species.named = pick(&SPECIES, value))
         .excludes(&["gas.species.gas_constant", "gas.species.cp"]),
     key("gas.species.gas_constant", likely(from(Dimension::SpecificHeat, 10.0, 10_000.0), 40.0, 4500.0),
-        Absent("that of the named species"), "\"296.803052 J/(kg K)\"", "Specific gas constant, R.")
-        .to(|draft, value| draft.species.gas_constant = optional(value)),
+        Absent("that of the named species"), "\"296.803052 J/(kg K)\"", "Specific gas constant, R."),
     key("gas.species.cp", likely(from(Dimension::SpecificHeat, 20.0, 50_000.0), 100.0, 20_000.0),
         Absent("that of the named species"), "\"1038.81 J/(kg K)\"",
-        "Specific heat at constant pressure; above the gas constant.")
-        .to(|draft, value| draft.species.cp = optional(value)),
+        "Specific heat at constant pressure; above the gas constant."),
     key("gas.mass_flow_rate", FLOW_RATE,
         Absent("needed where an inflow window gives none"), "\"5 g/s\"",
         "Mass flow rate of every inflow window that gives none.")
-        .to(|draft, value| draft.inflow.mass_flow_rate = optional(value))
         .study_only(),
     key("gas.inflow_temperature", KELVIN, Number(293.0), "\"293 K\"",
         "Temperature of the gas let in.")
-        .to(|draft, value| draft.inflow.temperature = number(value))
         .study_only(),
     key("gas.residual_gas_mass", GAS_MASS, Number(0.0), "\"0.05 g\"",
         "Residual gas in the stowed capsule.")
-        .to(|draft, value| draft.inflow.residual_mass = number(value))
         .study_only(),
     key("gas.residual_gas", KeyKind::Choice(&words(&RESIDUAL_GAS)), Word("burst"), "\"stored\"",
         "How residual gas enters. It is gas.species (nitrogen by default), also where it stands for air.")
-        .to(|draft, value| choose(&mut draft.inflow.residual, &RESIDUAL_GAS, value))
         .study_only(),
     key("gas.burst_rate", likely(from(Dimension::MassFlowRate, 1e-9, 100.0), 1e-9, MAX_PLAUSIBLE_FLOW_RATE), Number(0.005), "\"5 g/s\"",
         "Mass flow rate of a burst of residual gas.")
-        .to(|draft, value| draft.inflow.burst_rate = number(value))
         .study_only(),
     key("gas.ambient_pressure", likely(from(Dimension::Pressure, 0.0, 1e7), 0.0, 1e6), Number(0.0), "\"1 atm\"",
-        "Pressure outside: 0 in orbit. Above 0 the stowed capsule must contain gas: residual_gas ambient.")
-        .to(|draft, value| draft.scene.gas.ambient_pressure = number(value)),
+        "Pressure outside: 0 in orbit. Above 0 the stowed capsule must contain gas: residual_gas ambient."),
     key("gas.heat_transfer",
         KeyKind::Quantity(Quantity {
             dimension: Dimension::HeatTransfer,
@@ -225,33 +195,26 @@ pub static KEYS: &[Key] = &[
             plausible: Some([0.0, 1e4]),
             words: HEAT_TRANSFER_WORDS,
         }),
-        Number(0.3), "\"0.3 W/(m2 K)\"", "Heat transfer coefficient between gas and film.")
-        .to(|draft, value| draft.scene.gas.heat_transfer = heat_transfer(value)),
+        Number(0.3), "\"0.3 W/(m2 K)\"", "Heat transfer coefficient between gas and film."),
     key("gas.leak_area", likely(from(Dimension::Area, 0.0, 100.0), 0.0, 0.05), Number(0.0), "\"1 mm2\"",
         "Area of the leak orifice. It flows both ways: gas of the same species enters at film \
-          temperature where ambient_pressure is above the pressure inside.")
-        .to(|draft, value| draft.scene.gas.leak_area = number(value)),
+          temperature where ambient_pressure is above the pressure inside."),
     key("gas.discharge_coefficient", FRACTION, Number(1.0), "0.62",
-        "Discharge coefficient of the leak orifice.")
-        .to(|draft, value| draft.scene.gas.discharge_coefficient = number(value)),
+        "Discharge coefficient of the leak orifice."),
 
     key("contact.distance", likely(above(Dimension::Length, 0.0, 0.1), 1e-6, 0.02),
         Absent("0.4 of the design's reference gap; of a mesh, 0.4 of its smallest gap"), "\"0.6 mm\"",
         "Distance at which contact starts to push layers of film apart. The reference gap is the \
-         smallest stowed gap of the design at 16 subdivisions; it does not depend on the mesh.")
-        .to(|draft, value| draft.scene.contact.distance = optional(value)),
+         smallest stowed gap of the design at 16 subdivisions; it does not depend on the mesh."),
     key("contact.friction", from(Dimension::Number, 0.0, 10.0), Number(0.0), "0.2",
-        "Coulomb friction coefficient.")
-        .to(|draft, value| draft.scene.contact.friction = number(value)),
+        "Coulomb friction coefficient."),
     key("contact.adhesion", likely(from(Dimension::Pressure, 0.0, 1e6), 0.0, 1e5), Number(0.0), "\"10 Pa\"",
-        "Adhesive pull-off pressure.")
-        .to(|draft, value| draft.scene.contact.adhesion = number(value)),
+        "Adhesive pull-off pressure."),
 
     key("gravity", likely(from(Dimension::Acceleration, -1000.0, 1000.0), -100.0, 100.0), Number(0.0),
         "\"-9.80665 m/s2\"",
         "Acceleration of gravity along the axis, upward: -9.80665 for a capsule that stands on the \
          ground.")
-        .to(|draft, value| draft.scene.gravity = number(value))
         .study_only(),
     key("strategy", KeyKind::Text, Word("direct"), "\"delayed\"",
         "The inflation strategy: one named under strategies, or direct (released at once, inflow \
@@ -260,57 +223,44 @@ pub static KEYS: &[Key] = &[
 
     key("solver.model", KeyKind::Choice(&words(&MODEL_KINDS)), Word("film"), "\"piston\"",
         "Which model computes the job.")
-        .to(|draft, value| choose(&mut draft.scene.solver.model, &MODEL_KINDS, value))
         .study_only(),
     key("solver.integrator", KeyKind::Choice(&words(&INTEGRATORS)), Word("explicit"), "\"explicit\"",
-        "How film moves in time.")
-        .to(|draft, value| choose(&mut draft.scene.solver.integrator, &INTEGRATORS, value)),
+        "How film moves in time."),
     key("solver.end_time", END_TIME, Required, "\"0.5 s\"",
         "Simulated time.")
-        .to(|draft, value| draft.scene.solver.end_time = number(value))
         .study_only(),
     key("solver.cfl", FRACTION, Number(DEFAULT_CFL), "0.45",
         "Fraction of the stable step that film takes (CFL number). Quiescent film (less than 5 % of \
-         its largest kinetic energy for 20 ms) that touches nothing takes 16/9 of it, up to 0.8.")
-        .to(|draft, value| draft.stepping.cfl = number(value)),
+         its largest kinetic energy for 20 ms) that touches nothing takes 16/9 of it, up to 0.8."),
     key("solver.stepping.adaptive", above(Dimension::Number, 0.0, 0.1), Number(DEFAULT_TOLERANCE), "1e-9",
         "Relative error tolerance of one step, for error-controlled steps. Model piston only.")
-        .to(|draft, value| draft.stepping.adaptive = optional(value))
         .excludes(&["solver.stepping.fixed"])
         .study_only(),
     key("solver.stepping.fixed", likely(above(Dimension::Time, 0.0, 1.0), 1e-9, 0.01),
         Absent("the step is error-controlled"), "\"10 us\"", "A fixed step. Model piston only.")
-        .to(|draft, value| draft.stepping.fixed = optional(value))
         .excludes(&["solver.stepping.adaptive"])
         .study_only(),
     key("solver.step_limit", KeyKind::Integer(1, MAX_EXACT_INTEGER), Integer(10_000_000), "10000000",
-        "Number of steps after which a run stops with the status step_limit.")
-        .to(|draft, value| draft.scene.solver.step_limit = unsigned(value)),
+        "Number of steps after which a run stops with the status step_limit."),
 
     key("outputs.sample_interval", SAMPLE_INTERVAL, Number(0.001), "\"1 ms\"",
         "Time between samples of the history; at most a million samples in a run.")
-        .to(|draft, value| draft.scene.outputs.sample_interval = number(value))
         .study_only(),
     key("outputs.frames", KeyKind::Integer(0, 10_000), Integer(40), "40",
         "Number of shapes kept of a run, densest after the release; 0 for none. Models without a \
          shape ignore it.")
-        .to(|draft, value| draft.scene.outputs.frames = whole(value))
         .study_only(),
     key("outputs.thresholds.deployed_volume", FRACTION, Number(0.93), "0.93",
         "A deployed capsule has at least this fraction of the reference volume.")
-        .to(|draft, value| draft.scene.outputs.thresholds.deployed_volume = number(value))
         .study_only(),
     key("outputs.thresholds.deployed_height", FRACTION, Number(0.95), "0.95",
         "A deployed capsule has at least this fraction of the reference height.")
-        .to(|draft, value| draft.scene.outputs.thresholds.deployed_height = number(value))
         .study_only(),
     key("outputs.thresholds.stalled_volume", FRACTION, Number(0.85), "0.85",
         "A stalled capsule has a mean volume below this fraction of the reference volume.")
-        .to(|draft, value| draft.scene.outputs.thresholds.stalled_volume = number(value))
         .study_only(),
     key("outputs.thresholds.near_threshold_margin", from(Dimension::Number, 0.0, 1.0), Number(0.02), "0.02",
         "A verdict with a smaller margin is marked near_threshold.")
-        .to(|draft, value| draft.scene.outputs.thresholds.near_threshold_margin = number(value))
         .study_only(),
 
     key("job_limits.wall_time", likely(above(Dimension::Time, 0.0, 1e9), 1.0, 1e7), Absent("no limit"), "\"2 h\"",
@@ -324,13 +274,11 @@ pub static KEYS: &[Key] = &[
         .study_only(),
 
     key("seed", KeyKind::Integer(0, MAX_EXACT_INTEGER), Integer(0), "1",
-        "Seed of the imperfection of the stowed shape. Models without one ignore it.")
-        .to(|draft, value| draft.scene.seed = unsigned(value)),
+        "Seed of the imperfection of the stowed shape. Models without one ignore it."),
     key("imperfection_amplitude", likely(above(Dimension::Length, 0.0, 0.1), 1e-9, 0.02),
         Absent("0.2 of the design's reference gap"), "\"0.15 mm\"",
         "Amplitude of the imperfection: its largest displacement, along z. Equal displacements on \
-         every mesh of a design. Seed 0 has none.")
-        .to(|draft, value| draft.scene.imperfection_amplitude = optional(value)),
+         every mesh of a design. Seed 0 has none."),
 ];
 
 /// The keys of `grid`, and their meanings.

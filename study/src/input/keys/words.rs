@@ -70,7 +70,7 @@ pub(super) const fn words<T: Copy, const N: usize>(table: &[Named<T>; N]) -> [Wo
 }
 
 /// The value that a word of a table stands for; `None` for any other value.
-pub(super) fn pick<T: Copy>(table: &[Named<T>], value: &Value) -> Option<T> {
+pub(crate) fn pick<T: Copy>(table: &[Named<T>], value: &Value) -> Option<T> {
     let Value::Text(text) = value else { return None };
     table.iter().find(|row| row.name == text).map(|row| row.value)
 }
@@ -171,7 +171,7 @@ pub fn default_integrator() -> &'static str {
 }
 
 /// Values of `solver.integrator`: the rows of the solver's table.
-pub(super) const INTEGRATORS: [Named<IntegratorKind>; IntegratorKind::ALL.len()] = {
+pub(crate) const INTEGRATORS: [Named<IntegratorKind>; IntegratorKind::ALL.len()] = {
     let mut rows = [word("", IntegratorKind::Explicit, ""); IntegratorKind::ALL.len()];
     let mut index = 0;
     while index < rows.len() {
@@ -184,7 +184,7 @@ pub(super) const INTEGRATORS: [Named<IntegratorKind>; IntegratorKind::ALL.len()]
 };
 
 /// Values of `solver.model`.
-pub(super) const MODEL_KINDS: [Named<ModelKind>; MODELS.len()] = {
+pub(crate) const MODEL_KINDS: [Named<ModelKind>; MODELS.len()] = {
     let mut rows = [word("", ModelKind::Film, ""); MODELS.len()];
     let mut index = 0;
     while index < rows.len() {
@@ -219,11 +219,11 @@ pub(crate) const CAPS: [Named<Caps>; 2] = [
 ];
 
 /// Shape of a scene's capsule at the start: whether it is erected.
-pub(super) const SHAPES: [Named<bool>; 2] =
+pub(crate) const SHAPES: [Named<bool>; 2] =
     [word("stowed", false, "folded to its stack"), word("erected", true, "rolled onto its cone")];
 
 /// How residual gas enters.
-pub(super) const RESIDUAL_GAS: [Named<ResidualGas>; 3] = [
+pub(crate) const RESIDUAL_GAS: [Named<ResidualGas>; 3] = [
     word(
         "burst",
         ResidualGas::Burst,
@@ -250,7 +250,7 @@ const fn gas(name: &'static str, gas_constant: f64, cp: f64) -> Named<Species> {
 
 /// The named species: ideal gases, R = 8.314462618 J/(mol K) over the molar mass (CODATA 2018), cp
 /// at 300 K and low pressure (NIST-JANAF; air: dry air).
-pub(super) const SPECIES: [Named<Species>; 6] = [
+pub(crate) const SPECIES: [Named<Species>; 6] = [
     gas("nitrogen", 296.803_052, 1_038.810_68),
     gas("air", 287.055, 1_005.0),
     gas("helium", 2_077.264, 5_193.16),
@@ -258,6 +258,11 @@ pub(super) const SPECIES: [Named<Species>; 6] = [
     gas("carbon_dioxide", 188.924, 846.0),
     gas("hydrogen", 4_124.48, 14_310.0),
 ];
+
+/// Words of `gas.heat_transfer`, with the coefficient each stands for, W/(m² K).
+pub(crate) const ISOTHERMAL: &str = "isothermal";
+pub(crate) const HEAT_TRANSFER_WORDS: &[(&str, f64)] =
+    &[("adiabatic", 0.0), (ISOTHERMAL, f64::INFINITY)];
 
 /// The places a support of a study acts on, in the order of a scene's supports.
 pub(crate) const SUPPORT_PLACES: [Named<SupportLocation>; 4] = [

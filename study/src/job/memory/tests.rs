@@ -29,7 +29,7 @@ fn the_estimate_grows_with_mesh_layers_samples_and_frames() {
 
 #[test]
 fn samples_and_frames_count() {
-    let mut scene = fixture::job(0).scene;
+    let mut scene = Scene::clone(&fixture::job(0).scene);
     scene.solver.model = ModelKind::Film;
     let few = estimate(&scene);
     scene.outputs.sample_interval = scene.solver.end_time / 1e6;

@@ -10,7 +10,8 @@ use billow_solver::models::film::capsule::{imperfect, part_nodes};
 
 use super::memory::Needs;
 use super::shape::{Numbering, Shape};
-use crate::input::keys::draft::Draft;
+use crate::input::keys::SHAPES;
+use crate::input::settings::Settings;
 use crate::input::source::Source;
 use crate::input::value::short_number;
 use crate::platform::error::InputError;
@@ -19,9 +20,13 @@ use crate::platform::error::InputError;
 const MAX_ELEMENTS: u64 = 4_000_000;
 
 /// Reads the film of a design.
-pub(super) fn read(draft: &Draft, needs: Needs, source: &Source) -> Result<Shape, InputError> {
-    let design = &draft.scene.design;
-    let erected = draft.film_scene.erected.unwrap_or(draft.film_scene.statics);
+pub(super) fn read(
+    settings: &Settings,
+    needs: Needs,
+    source: &Source,
+) -> Result<Shape, InputError> {
+    let design = &settings.design(source)?;
+    let erected = settings.picked("design.shape", &SHAPES).unwrap_or(needs.statics);
     check(design, erected, source)?;
     let stack = (!erected).then_some([design.panels, design.storeys]);
     needs.check_capsule(design.elements(), stack, design.subdivisions, source)?;
@@ -33,7 +38,8 @@ pub(super) fn read(draft: &Draft, needs: Needs, source: &Source) -> Result<Shape
     let imperfection_amplitude = if erected {
         None
     } else {
-        imperfect(&mut mesh, &draft.scene)
+        let seed = settings.whole("seed", source)?;
+        imperfect(&mut mesh, design, seed, settings.number("imperfection_amplitude"))
             .map_err(|error| source.error("seed", "", error.to_string(), ""))?
     };
     let stowed = if erected && design.caps == Caps::Polygon {

@@ -6,11 +6,10 @@ use billow_solver::scene::error::SceneError;
 use billow_solver::scene::film_scene::{FilmContact, FilmScene};
 use billow_solver::scene::plate::Plate;
 
-use super::motion;
 use super::object::Object;
-use crate::input::keys::draft::Draft;
+use super::{is_static, motion};
 use crate::input::keys::{PLATE_KEYS, named};
-use crate::input::settings::list;
+use crate::input::settings::{Settings, list};
 use crate::input::source::Source;
 use crate::input::study_file::Json;
 use crate::platform::error::InputError;
@@ -18,13 +17,13 @@ use crate::platform::error::InputError;
 /// Reads `contact`; `None` where contact is off.
 pub(super) fn read(
     tree: &Json,
-    draft: &Draft,
+    settings: &Settings,
     source: &Source,
 ) -> Result<Option<FilmContact>, InputError> {
-    let statics = draft.film_scene.statics;
+    let statics = is_static(settings);
     let given = tree.get("contact").filter(|json| **json != Json::Null);
-    let plates = plates(given.and_then(|json| json.get("plates")), draft, source)?;
-    let enabled = draft.film_scene.contact;
+    let plates = plates(given.and_then(|json| json.get("plates")), settings, source)?;
+    let enabled = settings.flag("contact.enabled");
     if statics && (enabled == Some(true) || !plates.is_empty()) {
         let key = if plates.is_empty() { "contact.enabled" } else { "contact.plates" };
         let problem = "static equilibrium is solved without contact";
@@ -36,14 +35,14 @@ pub(super) fn read(
         return Ok(None);
     }
     let contact = FilmContact {
-        adhesion_range: draft.film_scene.adhesion_range,
+        adhesion_range: settings.number("contact.adhesion_range"),
         plates,
-        ..FilmContact::of(&draft.scene.contact)
+        ..FilmContact::of(&settings.contact(source)?)
     };
     if tree.get("design").is_none() {
         return Ok(Some(contact));
     }
-    let resolved = capsule::resolved_contact(contact, &draft.scene.design)
+    let resolved = capsule::resolved_contact(contact, &settings.design(source)?)
         .map_err(|error| source.error("design", "", error.to_string(), ""))?;
     Ok(Some(resolved))
 }
@@ -94,7 +93,11 @@ pub(super) fn touches_itself(film: &FilmScene) -> Result<bool, SceneError> {
     Ok(touches)
 }
 
-fn plates(json: Option<&Json>, draft: &Draft, source: &Source) -> Result<Vec<Plate>, InputError> {
+fn plates(
+    json: Option<&Json>,
+    settings: &Settings,
+    source: &Source,
+) -> Result<Vec<Plate>, InputError> {
     let allowed = "a list of {\"point\": [0, 0, 0], \"normal\": [0, 0, 1]}";
     let Some(json) = json.filter(|json| **json != Json::Null) else { return Ok(Vec::new()) };
     let mut plates: Vec<Plate> = Vec::new();
@@ -103,7 +106,7 @@ fn plates(json: Option<&Json>, draft: &Draft, source: &Source) -> Result<Vec<Pla
         let object = Object::new(json, &path, "a plate", PLATE_KEYS, &["move"], source)?;
         let motion = object
             .given("move")
-            .map(|json| motion::read(json, &format!("{path}.move"), draft, source))
+            .map(|json| motion::read(json, &format!("{path}.move"), settings, source))
             .transpose()?;
         if motion.is_some_and(|motion| motion.rotation.is_some()) {
             return Err(object.error("move", "a plate cannot rotate", "a translation alone"));

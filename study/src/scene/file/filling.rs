@@ -9,12 +9,12 @@ use billow_solver::scene::film_support::FilmSupport;
 use billow_solver::scene::{GasSupply, HeatTransfer, InflowWindow};
 use nalgebra::Vector3;
 
+use super::is_static;
 use super::object::Object;
 use super::shape::Shape;
-use crate::input::keys::draft::Draft;
-use crate::input::keys::{KEYS, SCENE_WINDOW_KEYS, named};
+use crate::input::keys::{SCENE_WINDOW_KEYS, named};
 use crate::input::plausible::Implausible;
-use crate::input::settings::{list, missing_key, species};
+use crate::input::settings::{Settings, list};
 use crate::input::source::{Source, shown};
 use crate::input::study_file::Json;
 use crate::platform::error::InputError;
@@ -22,7 +22,7 @@ use crate::platform::error::InputError;
 /// Reads `gas`. With gas, fans close an open film.
 pub(super) fn read(
     tree: &Json,
-    draft: &Draft,
+    settings: &Settings,
     shape: &mut Shape,
     supports: &[FilmSupport],
     notes: &mut Vec<String>,
@@ -30,7 +30,7 @@ pub(super) fn read(
 ) -> Result<Filling, InputError> {
     let gas = tree.get("gas");
     let Some(gas) = gas.filter(|gas| gas.get("pressure").is_none()) else {
-        let pressure = draft.film_scene.pressure.unwrap_or(0.0);
+        let pressure = settings.number("gas.pressure").unwrap_or(0.0);
         if let Some(Json::Object(members)) = gas
             && let Some((other, value)) = members.iter().find(|(name, _)| name != "pressure")
         {
@@ -47,7 +47,7 @@ pub(super) fn read(
         }
         return Ok(Filling::Pressure(pressure));
     };
-    if draft.film_scene.statics {
+    if is_static(settings) {
         return Err(source.error(
             "gas",
             &gas.brief(),
@@ -57,13 +57,10 @@ pub(super) fn read(
     }
     close(shape, supports, notes, source)?;
     let volume = check_outward(shape, source)?;
-    let mut supply = GasSupply {
-        species: species(&draft.species, source)?,
-        windows: windows(gas.get("windows"), draft, source)?,
-        ..draft.scene.gas.clone()
-    };
-    let initial_temperature = initial_temperature(&supply, draft, source)?;
-    supply.initial_mass = initial_mass(&supply, draft, volume, initial_temperature, source)?;
+    let windows = windows(gas.get("windows"), settings, source)?;
+    let mut supply = settings.gas(0.0, windows, source)?;
+    let initial_temperature = initial_temperature(&supply, settings, source)?;
+    supply.initial_mass = initial_mass(&supply, settings, volume, initial_temperature, source)?;
     notes.extend(below_ambient(&supply, volume, initial_temperature));
     Ok(Filling::Gas { supply, initial_temperature })
 }
@@ -71,11 +68,12 @@ pub(super) fn read(
 /// Temperature of the gas at the start, K.
 fn initial_temperature(
     supply: &GasSupply,
-    draft: &Draft,
+    settings: &Settings,
     source: &Source,
 ) -> Result<f64, InputError> {
-    let film_temperature = draft.scene.film.temperature;
-    let initial_temperature = draft.film_scene.initial_temperature.unwrap_or(film_temperature);
+    let film_temperature = settings.needed("film.temperature", source)?;
+    let initial_temperature =
+        settings.number("gas.initial_temperature").unwrap_or(film_temperature);
     let isothermal = supply.heat_transfer == HeatTransfer::Isothermal;
     if isothermal && initial_temperature.to_bits() != film_temperature.to_bits() {
         return Err(source.error(
@@ -91,12 +89,12 @@ fn initial_temperature(
 /// Gas inside at the start, kg: given, or m = p V/(R T) of the given pressure.
 fn initial_mass(
     supply: &GasSupply,
-    draft: &Draft,
+    settings: &Settings,
     volume: f64,
     initial_temperature: f64,
     source: &Source,
 ) -> Result<f64, InputError> {
-    match (draft.film_scene.initial_mass, draft.film_scene.initial_pressure) {
+    match (settings.number("gas.initial_mass"), settings.number("gas.initial_pressure")) {
         (Some(_), Some(pressure)) => Err(source.error(
             "gas.initial_pressure",
             &shown(pressure),
@@ -131,14 +129,11 @@ fn below_ambient(supply: &GasSupply, volume: f64, temperature: f64) -> Option<St
 /// Inflow windows in order of time, cut at the end of the run.
 fn windows(
     json: Option<&Json>,
-    draft: &Draft,
+    settings: &Settings,
     source: &Source,
 ) -> Result<Vec<InflowWindow>, InputError> {
     let Some(json) = json else { return Ok(Vec::new()) };
-    let end_time = draft
-        .film_scene
-        .end_time
-        .ok_or_else(|| missing_key(const { named(KEYS, "solver.end_time") }, source))?;
+    let end_time = settings.needed("solver.end_time", source)?;
     let allowed = "a list of {\"from\": 0, \"to\": \"0.3 s\", \"mass_flow_rate\": \"5 g/s\"}";
     let mut windows = Vec::new();
     for (index, json) in list(json, "gas.windows", source, allowed)?.iter().enumerate() {

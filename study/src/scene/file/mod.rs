@@ -1,7 +1,7 @@
 //! A scene file: one capsule or any mesh, resolved to the film that is run.
 //!
 //! ```text
-//! text → Json → (--set) → draft, mesh, supports … → FilmScene, and the user's names of its nodes
+//! text → Json → (--set) → settings, mesh, supports … → FilmScene, and the user's names of its nodes
 //! ```
 //! Every error of a scene is found here, before anything runs.
 
@@ -33,10 +33,9 @@ use billow_solver::scene::film_scene::{FilmScene, FilmSolver};
 use nalgebra::Vector3;
 use serde_json::json;
 
-use crate::input::keys::draft::Draft;
-use crate::input::keys::{GRAVITY, KEYS, Key, Refusal, SCENE, named};
+use crate::input::keys::{GRAVITY, Refusal, SCENE};
 use crate::input::overrides;
-use crate::input::settings::{Settings, check_sample_interval, check_version, missing_key};
+use crate::input::settings::{Settings, check_sample_interval, check_version};
 use crate::input::source::Source;
 use crate::input::study_file::{self, Json};
 use crate::input::value::Value;
@@ -136,18 +135,19 @@ impl SceneFile {
         settings.read("", tree, &reader.source)?;
         check_one_shape(tree, &reader.source)?;
         let has_design = tree.get("design").is_some();
-        let wanted = |key: &Key| has_design || !key.path.starts_with("design.");
-        let draft = settings.draft(wanted, &reader.source)?;
-        let statics = draft.film_scene.statics;
-        let contact = contact::read(tree, &draft, &reader.source);
+        if has_design {
+            settings.design(&reader.source)?;
+        }
+        let statics = is_static(&settings);
+        let contact = contact::read(tree, &settings, &reader.source);
         reader.needs = Needs { contact: matches!(contact, Ok(Some(_))), statics };
         let mut shape = match tree.get("mesh") {
             Some(json) => mesh::read(json, reader)?,
-            None => capsule::read(&draft, reader.needs, &reader.source)?,
+            None => capsule::read(&settings, reader.needs, &reader.source)?,
         };
-        let supports = supports::read(tree, &draft, &shape, &reader.source)?;
+        let supports = supports::read(tree, &settings, &shape, &reader.source)?;
         let filling =
-            filling::read(tree, &draft, &mut shape, &supports, &mut notes, &reader.source)?;
+            filling::read(tree, &settings, &mut shape, &supports, &mut notes, &reader.source)?;
         conflicts::check(&supports, &shape, &reader.source)?;
         let mut seating = supports::seating(&supports, &shape);
         if statics {
@@ -156,7 +156,7 @@ impl SceneFile {
         let velocities = start::velocities(tree.get("start"), &shape, reader)?;
         let (outputs, recorded) =
             outputs::read(tree.get("outputs"), &shape, &mut notes, &reader.source)?;
-        let end_time = end_time(&draft, &reader.source)?;
+        let end_time = end_time(&settings, &reader.source)?;
         check_sample_interval(outputs.sample_interval, end_time, &reader.source)?;
         if !statics {
             outputs::check_samples(outputs.sample_interval, end_time, &reader.source);
@@ -169,18 +169,18 @@ impl SceneFile {
         let film = FilmScene {
             shell: shape.shell,
             velocities,
-            film: draft.scene.film,
+            film: settings.film(&reader.source)?,
             filling,
             supports,
             gravity: gravity(tree.get("gravity"), &reader.source)?,
-            release_time: draft.scene.release_time,
+            release_time: settings.needed("release_time", &reader.source)?,
             solver: FilmSolver {
-                integrator: draft.scene.solver.integrator,
-                cfl: draft.stepping.cfl,
+                integrator: settings.integrator(&reader.source)?,
+                cfl: settings.needed("solver.cfl", &reader.source)?,
                 end_time,
                 statics,
-                mass_damping: draft.film_scene.mass_damping,
-                step_limit: draft.scene.solver.step_limit,
+                mass_damping: settings.needed("solver.mass_damping", &reader.source)?,
+                step_limit: settings.whole("solver.step_limit", &reader.source)?,
                 instruction_set,
             },
             outputs,
@@ -189,7 +189,7 @@ impl SceneFile {
         memory::check_outputs(&film, &reader.source)?;
         mesh::check_closure(&film, &shape.numbering, &reader.source)?;
         contact::check_plates(&film, &reader.source)?;
-        notes.extend(without_effect(&film, &draft));
+        notes.extend(without_effect(&film, &settings));
         let film = check_film(film, tree, &mut notes, &reader.source)?;
         notes.extend(reader.source.warnings());
         let (json, fingerprint) = identity(tree, reader);
@@ -240,10 +240,10 @@ fn seat(shape: &mut Shape, movers: Vec<PrescribedNodes>) {
 }
 
 /// Keys that have no effect on this scene.
-fn without_effect(film: &FilmScene, draft: &Draft) -> Vec<String> {
+fn without_effect(film: &FilmScene, settings: &Settings) -> Vec<String> {
     let mut notes = Vec::new();
     let statics = film.solver.statics;
-    if statics && draft.film_scene.end_time.is_some() {
+    if statics && settings.number("solver.end_time").is_some() {
         notes.push("solver.end_time has no effect: static equilibrium has no time".to_owned());
     }
     if film.release_time > 0.0 && (statics || film.release_time >= film.solver.end_time) {
@@ -290,12 +290,16 @@ fn identity(tree: &Json, reader: &Reader) -> (serde_json::Value, String) {
 type Checked<T> = std::result::Result<T, InputError>;
 
 /// The end of the run, s. Static equilibrium needs none and ignores it.
-fn end_time(draft: &Draft, source: &Source) -> Checked<f64> {
-    match draft.film_scene.end_time {
-        Some(time) => Ok(time),
-        None if draft.film_scene.statics => Ok(1.0),
-        None => Err(missing_key(const { named(KEYS, "solver.end_time") }, source)),
+fn end_time(settings: &Settings, source: &Source) -> Checked<f64> {
+    match settings.number("solver.end_time") {
+        None if is_static(settings) => Ok(1.0),
+        _ => settings.needed("solver.end_time", source),
     }
+}
+
+/// Whether static equilibrium is solved instead of motion.
+fn is_static(settings: &Settings) -> bool {
+    settings.flag("solver.static") == Some(true)
 }
 
 fn gravity(json: Option<&Json>, source: &Source) -> Checked<Vector3<f64>> {

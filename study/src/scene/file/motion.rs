@@ -3,8 +3,8 @@
 use billow_solver::scene::motion::{Motion, Profile, Rotation};
 
 use super::object::Object;
-use crate::input::keys::draft::Draft;
 use crate::input::keys::{MOVE_KEYS, PROFILES, ROTATION_KEYS, named};
+use crate::input::settings::Settings;
 use crate::input::source::{Source, shown};
 use crate::input::study_file::Json;
 use crate::platform::error::InputError;
@@ -13,12 +13,13 @@ use crate::platform::error::InputError;
 pub(super) fn read(
     json: &Json,
     path: &str,
-    draft: &Draft,
+    settings: &Settings,
     source: &Source,
 ) -> Result<Motion, InputError> {
     let object = Object::new(json, path, "a move", MOVE_KEYS, &["rotation"], source)?;
     let from = object.needed(const { named(MOVE_KEYS, "from") })?;
-    let to = object.number(const { named(MOVE_KEYS, "to") })?.or(draft.film_scene.end_time);
+    let to =
+        object.number(const { named(MOVE_KEYS, "to") })?.or(settings.number("solver.end_time"));
     let to = to.ok_or_else(|| object.missing(const { named(MOVE_KEYS, "to") }))?;
     if to <= from {
         let problem = "the move ends before it begins";

@@ -9,9 +9,8 @@ use super::motion;
 use super::object::Object;
 use super::selection::{self, Plane};
 use super::shape::Shape;
-use crate::input::keys::draft::Draft;
 use crate::input::keys::{BODY_KEYS, SUPPORT_KEYS, named};
-use crate::input::settings::list;
+use crate::input::settings::{Settings, list};
 use crate::input::source::Source;
 use crate::input::study_file::Json;
 use crate::input::supports::are_components;
@@ -53,7 +52,7 @@ pub(super) fn seating(supports: &[FilmSupport], shape: &Shape) -> Vec<Prescribed
 /// Reads `supports`; without it, a capsule stands on its bottom ring.
 pub(super) fn read(
     tree: &Json,
-    draft: &Draft,
+    settings: &Settings,
     shape: &Shape,
     source: &Source,
 ) -> Result<Vec<FilmSupport>, InputError> {
@@ -73,7 +72,7 @@ pub(super) fn read(
         let path = format!("supports[{index}]");
         let more = ["nodes", "body", "move"];
         let object = Object::new(json, &path, "a support", SUPPORT_KEYS, &more, source)?;
-        let mut support = support(&object, draft, shape, source)?;
+        let mut support = support(&object, settings, shape, source)?;
         let exists = |name: &str| supports.iter().any(|known| known.name == name);
         if exists(&support.name) {
             if object.given("name").is_some() {
@@ -90,7 +89,7 @@ pub(super) fn read(
 
 fn support(
     object: &Object<'_>,
-    draft: &Draft,
+    settings: &Settings,
     shape: &Shape,
     source: &Source,
 ) -> Result<FilmSupport, InputError> {
@@ -106,7 +105,7 @@ fn support(
     let nodes = selection::nodes(object, &on, plane, shape)?;
     let motion = object
         .given("move")
-        .map(|json| motion::read(json, &format!("{}.move", object.path), draft, source))
+        .map(|json| motion::read(json, &format!("{}.move", object.path), settings, source))
         .transpose()?;
     let hold = hold(object, plane, motion.is_some(), source)?;
     let name = object.text(const { named(SUPPORT_KEYS, "name") })?.unwrap_or(on);

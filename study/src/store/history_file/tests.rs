@@ -36,7 +36,7 @@ fn a_history_is_read_back_bit_for_bit_and_written_twice_as_the_same_bytes() {
         assert_eq!(stored.job, job.id);
         assert_eq!(stored.status, Status::Done);
         assert_eq!(stored.content_hash, hash_of(&stored.history, &[], None));
-        assert_eq!(stored.scene, serde_json::to_string(&job.scene).unwrap());
+        assert_eq!(stored.scene, serde_json::to_string(&*job.scene).unwrap());
     }
 }
 

@@ -24,7 +24,7 @@ pub fn encode(
     deployment: &Deployment,
     hash: &str,
 ) -> std::result::Result<Vec<u8>, String> {
-    let scene = serde_json::to_string(&job.scene).map_err(|error| error.to_string())?;
+    let scene = serde_json::to_string(&*job.scene).map_err(|error| error.to_string())?;
     encode_scene(&job.id, &scene, deployment, hash)
 }
 

@@ -92,7 +92,7 @@ fn scenes(subdivisions: u32, effort: Effort) -> Result<Vec<(&'static str, Scene)
     let scene_of = |strategy: &'static str| {
         let wanted = ("strategy".to_owned(), Value::from(strategy));
         let job = &points.iter().find(|point| point.job.parameters.contains(&wanted))?.job;
-        let mut scene = job.scene.clone();
+        let mut scene = Scene::clone(&job.scene);
         if effort == Effort::Quick {
             scene.solver.end_time = QUICK_END_TIME;
         }
