@@ -1,5 +1,5 @@
 //! Faults that begin within a run: each is caught by a named audit before the run ends, in every integrator, or is
-//! listed with the reason why no audit sees it. `docs/guide/faults.md` has the same table.
+//! listed with the reason why no audit sees it. `docs/reference/faults.md` has the same table.
 
 use std::path::Path;
 
@@ -110,7 +110,7 @@ fn faults_reach_both_integrators_of_the_hybrid() {
 
 #[test]
 fn the_guide_has_this_table() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/guide/faults.md");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/reference/faults.md");
     let page = std::fs::read_to_string(path).expect("the guide");
     let mut expected: Vec<String> = ROWS
         .iter()

@@ -284,7 +284,7 @@ fn maps(text: &str) -> Checked<Vec<Map>> {
     let reader = &mut serde_json::Deserializer::from_str(text);
     let file: FileText = serde_path_to_error::deserialize(reader).map_err(|error| {
         let key = error.path().to_string();
-        refuse(&key, &"", &error.inner().to_string(), "docs/guide/stability.md lists the keys")
+        refuse(&key, &"", &error.inner().to_string(), "docs/guide/validate.md lists the keys")
     })?;
     let mut maps: Vec<Map> = Vec::new();
     for (index, text) in file.maps.into_iter().enumerate() {
