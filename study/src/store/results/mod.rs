@@ -136,8 +136,8 @@ impl<'a> Results<'a> {
     pub fn parts(&self) -> Result<Vec<Self>> {
         let folder = self.root.join(PARTS);
         let paths = self.files.list(&folder).map_err(|error| disk_error(&folder, &error))?;
-        let begun = paths.iter().filter(|path| path.join("study.json").exists());
-        Ok(begun.map(|path| Self::new(self.files, path)).collect())
+        let started = paths.iter().filter(|path| path.join("study.json").exists());
+        Ok(started.map(|path| Self::new(self.files, path)).collect())
     }
 
     /// The records of the results of which these are a part; none for a folder outside `parts`.
