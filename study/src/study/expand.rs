@@ -48,11 +48,9 @@ pub(super) fn points(
     let mut point = base.clone();
     for number in 0..product {
         set_axes(&mut point, grid, &axes, number);
-        expansion.number = number;
         filtered += usize::from(!expansion.add(&point, grid.filter.as_ref())?);
     }
     let searched = grid.search.as_ref().map(|search| search.column);
-    expansion.number = product;
     for values in &grid.points {
         let mut point = base.clone();
         for (column, value) in values {
@@ -160,8 +158,6 @@ struct Expansion<'a> {
     source: &'a Source,
     /// Whether a search runs along the points that are added.
     searched: Searched,
-    /// The number of the next point.
-    number: usize,
     /// Designs already solved: points that share a design share its fold.
     folds: HashMap<DesignKey, Rc<Fold>>,
     points: Vec<StudyPoint>,
@@ -173,7 +169,6 @@ impl<'a> Expansion<'a> {
             base,
             grid,
             source,
-            number: 0,
             searched: Searched::No,
             folds: HashMap::new(),
             points: Vec::new(),
@@ -191,7 +186,6 @@ impl<'a> Expansion<'a> {
             let mut point = point.clone();
             set_axes(&mut point, self.grid, &axes, number);
             self.add(&point, filter)?;
-            self.number += 1;
         }
         Ok(())
     }
@@ -223,9 +217,9 @@ impl<'a> Expansion<'a> {
             })
             .map_err(|error| self.at_point(point, error))?;
         let parameters = self.parameters(point);
-        let (number, searched) = (self.number, self.searched);
+        let searched = self.searched;
         let scene = Arc::new(scene);
-        self.points.push(StudyPoint { parameters, number, scene, infeasible, solved, searched });
+        self.points.push(StudyPoint { parameters, scene, infeasible, solved, searched });
         Ok(true)
     }
 

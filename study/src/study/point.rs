@@ -24,8 +24,6 @@ pub(crate) enum Searched {
 pub(crate) struct StudyPoint {
     /// The varied parameters.
     pub parameters: Parameters,
-    /// Its number: [`super::sketch`].
-    pub number: usize,
     /// The scene of its job.
     pub scene: Arc<Scene>,
     /// Why it has no job; `None` for a feasible point.
