@@ -33,7 +33,6 @@ mod variables;
 
 use std::collections::BTreeSet;
 use std::path::Path;
-use std::sync::OnceLock;
 
 use crate::accuracy::Tolerances;
 use crate::input::keys::STUDY;
@@ -87,8 +86,8 @@ pub struct Study {
     result_limits: Vec<ResultLimit>,
     /// The errors that its results must keep.
     accuracy: Option<Accuracy>,
-    /// Its points, resolved when something asks for them.
-    points: OnceLock<Points>,
+    /// Its points, resolved.
+    points: Points,
 }
 
 impl Study {
@@ -180,7 +179,7 @@ impl Study {
             grid,
             result_limits,
             accuracy,
-            points: points.into(),
+            points,
         })
     }
 
@@ -283,15 +282,7 @@ impl Study {
     /// The points of the study, in plan order: those of the product that the filter keeps, and the single
     /// points.
     pub(crate) fn points(&self) -> &[StudyPoint] {
-        &self.expanded().points
-    }
-
-    /// The points, resolved.
-    fn expanded(&self) -> &Points {
-        self.points.get_or_init(|| {
-            let (source, size) = (Source::new(&self.name), PlanSize { points: usize::MAX });
-            expand::points(&self.base, &self.grid, &source, size).unwrap_or_default()
-        })
+        &self.points.points
     }
 
     /// The runs of one searched point, with these values by column of the grid. Empty where the filter
@@ -314,7 +305,7 @@ impl Study {
 
     /// Number of points of the product that the filter removed.
     pub fn filtered(&self) -> usize {
-        self.expanded().filtered
+        self.points.filtered
     }
 }
 
