@@ -125,13 +125,16 @@ impl Formatter for Canonical<'_> {
 
     fn begin_object_key<W: ?Sized + Write>(&mut self, _: &mut W, _: bool) -> io::Result<()> {
         let start = self.text.borrow().len();
-        self.objects.last_mut().into_iter().for_each(|members| members.push([start, start]));
+        if let Some(members) = self.objects.last_mut() {
+            members.push([start, start]);
+        }
         Ok(())
     }
 
     fn end_object_key<W: ?Sized + Write>(&mut self, _: &mut W) -> io::Result<()> {
-        let member = self.objects.last_mut().and_then(|members| members.last_mut());
-        member.into_iter().for_each(|member| member[1] = self.text.borrow().len());
+        if let Some(member) = self.objects.last_mut().and_then(|members| members.last_mut()) {
+            member[1] = self.text.borrow().len();
+        }
         Ok(())
     }
 

@@ -56,7 +56,6 @@ pub(super) fn to_json(limits: &[ResultLimit]) -> Json {
 
 /// The column that a limit may name: an outcome, a measure or part of the audit.
 fn column(name: &str) -> Option<&'static RowColumn> {
-    let name = name;
     COLUMNS.iter().find(|column| column.name == name && can_be_limited(column))
 }
 
