@@ -95,7 +95,6 @@ fn a_pause_changes_no_bit_of_any_model() {
 fn a_run_stopped_anywhere_and_resumed_gives_the_same_bits() {
     let scene = film();
     let whole = solve(&scene, &mut Unobserved);
-    println!("{} steps", whole.steps);
     // Packed, within an interval, during inflow, near the end.
     for after in [1, 37, whole.steps / 4, whole.steps / 2 + 3, whole.steps - 60] {
         let mut first = Pausing::new(1, Some(after));

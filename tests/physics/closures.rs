@@ -63,21 +63,11 @@ fn vessel(warp: f64, lift: f64) -> Shell {
         let upper = rim.contains(&(ALONG * AROUND));
         cap(&mut shell, &rim, if upper { lift } else { -0.5 * lift });
     }
-    let shell =
-        Shell::relaxed(shell.positions.clone(), shell.triangles.clone()).closed_by(shell.closure);
+    let closure = shell.closure;
+    let shell = Shell { closure, ..Shell::relaxed(shell.positions, shell.triangles) };
     shell.check().unwrap();
     assert!(shell.is_closed());
     shell
-}
-
-trait ClosedBy {
-    fn closed_by(self, closure: Vec<[u32; 3]>) -> Self;
-}
-
-impl ClosedBy for Shell {
-    fn closed_by(self, closure: Vec<[u32; 3]>) -> Self {
-        Self { closure, ..self }
-    }
 }
 
 /// The ring in the middle is held.
@@ -242,18 +232,10 @@ fn fans_over_free_rims_move_with_them() {
 fn free_vessel_keeps_its_momentum() {
     let mut film = with_gas(vessel(0.04, 0.03), Vec::new(), 0.0);
     film.advance(5e-3, &Phase::default()).unwrap();
-    let velocities = &film.view().state.velocities;
-    let momentum: Vector3<f64> =
-        film.view().system.model.mass.iter().zip(velocities.iter()).map(|(m, v)| v * *m).sum();
-    let size: f64 = film
-        .view()
-        .system
-        .model
-        .mass
-        .iter()
-        .zip(velocities.iter())
-        .map(|(m, v)| m * v.norm())
-        .sum();
+    let (system, state) = (film.view().system, film.view().state);
+    let nodes = || system.model.mass.iter().zip(state.velocities.iter());
+    let momentum: Vector3<f64> = nodes().map(|(m, v)| v * *m).sum();
+    let size: f64 = nodes().map(|(m, v)| m * v.norm()).sum();
     assert!(size > 0.0 && momentum.norm() < 1e-12 * size, "{momentum:?} of {size}");
 }
 

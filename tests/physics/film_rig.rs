@@ -13,6 +13,7 @@ use billow_solver::mechanics::forces::membrane::{
 };
 use billow_solver::mechanics::gas::{Gas, GasState};
 use billow_solver::models::film::capsule;
+use billow_solver::output::ledger::{Ledger, residuals};
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::film_scene::FilmScene;
 use billow_solver::scene::inflow::Inflow;
@@ -120,4 +121,19 @@ pub fn nitrogen_gas() -> Gas {
 /// Orders of convergence of errors on meshes or steps halved each time.
 pub fn orders(errors: &[f64]) -> Vec<f64> {
     errors.windows(2).map(|pair| (pair[0] / pair[1]).abs().log2()).collect()
+}
+
+/// The ledgers of film at time 0 and at `samples` equal distances up to `end` (s).
+pub fn ledgers(film: &mut FilmSimulation, end: f64, samples: u32, phase: &Phase) -> Vec<Ledger> {
+    let mut series = vec![film.view().ledger()];
+    for sample in 1..=samples {
+        film.advance(end * f64::from(sample) / f64::from(samples), phase).unwrap();
+        series.push(film.view().ledger());
+    }
+    series
+}
+
+/// The largest residual of a series of ledgers.
+pub fn largest_residual(series: &[Ledger]) -> f64 {
+    residuals(series).into_iter().fold(0.0, f64::max)
 }

@@ -1,6 +1,6 @@
 //! The fold of the paper's capsule and of similar designs, to every digit known.
 
-use billow_solver::geometry::fold::{FoldDesign, FoldError, FoldPattern};
+use billow_solver::geometry::fold::{FoldDesign, FoldError, FoldPattern, Nearest};
 use billow_solver::geometry::mesh::{Mesh, Shape};
 use billow_solver::scene::Film;
 
@@ -11,6 +11,21 @@ use crate::geometry::{crossings, paper_angles, paper_design, paper_height, solve
 fn prints(value: f64, printed: &str) {
     let decimals = printed.split_once('.').map_or(0, |(_, fraction)| fraction.len());
     assert_eq!(format!("{value:.decimals$}"), printed);
+}
+
+/// A design with a nearest feasible value.
+fn changed(design: &FoldDesign, near: &Nearest) -> FoldDesign {
+    let mut changed = design.clone();
+    match near.key {
+        "N" => changed.panels = near.value as u32,
+        "M" => changed.storeys = near.value as u32,
+        "height" => changed.height = Some(near.value),
+        "top_radius" => changed.top_radius = Some(near.value),
+        "bottom_radius" => changed.bottom_radius = near.value,
+        "alpha1_over_phi" => changed.alpha1_over_phi = Some(near.value),
+        key => panic!("{key}"),
+    }
+    changed
 }
 
 #[test]
@@ -70,14 +85,7 @@ fn the_papers_height_and_ratio() {
     };
     assert_eq!(nearest.iter().find(|n| n.key == "M").expect("a nearest M").value, 3.0);
     for near in &nearest {
-        let mut design = paper_height(2);
-        match near.key {
-            "height" => design.height = Some(near.value),
-            "bottom_radius" => design.bottom_radius = near.value,
-            "alpha1_over_phi" => design.alpha1_over_phi = Some(near.value),
-            _ => continue,
-        }
-        solved(&design);
+        solved(&changed(&paper_height(2), near));
     }
 }
 
@@ -224,17 +232,7 @@ fn nearest_values_are_feasible_for_distant_designs() {
         };
         assert!(!nearest.is_empty());
         for near in nearest {
-            let mut changed = design.clone();
-            match near.key {
-                "N" => changed.panels = near.value as u32,
-                "M" => changed.storeys = near.value as u32,
-                "height" => changed.height = Some(near.value),
-                "top_radius" => changed.top_radius = Some(near.value),
-                "bottom_radius" => changed.bottom_radius = near.value,
-                "alpha1_over_phi" => changed.alpha1_over_phi = Some(near.value),
-                key => panic!("{key}"),
-            }
-            solved(&changed);
+            solved(&changed(&design, &near));
         }
     }
 }

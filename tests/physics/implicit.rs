@@ -20,23 +20,18 @@ use nalgebra::Vector3;
 
 use crate::film_rig::{INFLOW, free, moving, nitrogen_gas, orders, resumed};
 
-/// The same film at its state, with fixed implicit steps of this length (s).
-fn with_implicit_steps(film: FilmSimulation, step: f64) -> FilmSimulation {
+/// The same film at its state, with implicit steps of this control.
+fn with_steps(film: FilmSimulation, control: StepControl) -> FilmSimulation {
     let (system, state, settings) = film.into_parts();
     let workspace = Workspace::new(&system, &state);
-    let control = StepControl::Fixed(step);
     let integrator = Implicit::start(&system, &state, workspace, control);
     let settings = SimulationSettings { integrator: IntegratorKind::Implicit, ..settings };
     FilmSimulation::of(system, state, settings, Box::new(integrator))
 }
 
 fn with_error_control(film: FilmSimulation, cfl: f64) -> FilmSimulation {
-    let (system, state, settings) = film.into_parts();
-    let workspace = Workspace::new(&system, &state);
-    let control = StepControl::error(cfl, system.model.size(), 1.0);
-    let integrator = Implicit::start(&system, &state, workspace, control);
-    let settings = SimulationSettings { integrator: IntegratorKind::Implicit, ..settings };
-    FilmSimulation::of(system, state, settings, Box::new(integrator))
+    let control = StepControl::error(cfl, film.view().system.model.size(), 1.0);
+    with_steps(film, control)
 }
 
 const SIDE: f64 = 0.3;
@@ -92,7 +87,7 @@ fn errors(film: &FilmSimulation, time: f64, phase: &Phase, first: f64) -> Vec<f6
     (0..4)
         .map(|halvings| {
             let step = first / f64::from(1 << halvings);
-            let end = end_of(with_implicit_steps(film.clone(), step), time, phase);
+            let end = end_of(with_steps(film.clone(), StepControl::Fixed(step)), time, phase);
             end.largest_displacement(&reference)
         })
         .collect()
@@ -102,7 +97,6 @@ fn errors(film: &FilmSimulation, time: f64, phase: &Phase, first: f64) -> Vec<f6
 fn a_taut_sheet_converges_with_order_two() {
     let errors = errors(&sheet(), 4e-3, &free(), 1e-4);
     let orders = orders(&errors);
-    println!("{errors:?} {orders:?}");
     assert!(orders[1..].iter().all(|order| (1.8..2.3).contains(order)), "{orders:?}");
 }
 
@@ -110,7 +104,6 @@ fn a_taut_sheet_converges_with_order_two() {
 fn a_breathing_sphere_with_inflow_converges_with_order_two() {
     let errors = errors(&sphere(), 4e-3, &INFLOW, 1e-4);
     let orders = orders(&errors);
-    println!("{errors:?} {orders:?}");
     assert!(orders[1..].iter().all(|order| (1.7..2.3).contains(order)), "{orders:?}");
 }
 
@@ -119,7 +112,7 @@ fn creep_lags_no_step_behind_where_steps_are_long_against_it() {
     // Film that is filled over a thousand relaxation times has the modulus of film without loss.
     let (step, time) = (0.02, 0.4);
     let radius = |loss_factor: f64, time: f64| {
-        let film = with_implicit_steps(sphere_with_loss(loss_factor), step);
+        let film = with_steps(sphere_with_loss(loss_factor), StepControl::Fixed(step));
         let end = end_of(film, time, &INFLOW);
         end.iter().map(|x| x.norm()).sum::<f64>() / end.len() as f64
     };
@@ -160,9 +153,8 @@ fn film_with_loss_damping_and_a_plane_agrees_with_central_differences() {
         (film.view().state.clone(), film.view().gas_balance(), series)
     };
     let (state, gas, series) = run(build());
-    let (other, other_gas, other_series) = run(with_implicit_steps(build(), 2.5e-6));
+    let (other, other_gas, other_series) = run(with_steps(build(), StepControl::Fixed(2.5e-6)));
     let distance = state.positions.largest_displacement(&other.positions);
-    println!("{distance:e} m; {:?}; {:?}", series[10], other_series[10]);
     assert!(distance < 2e-5, "{distance:e}");
     assert!((state.planes[0] - other.planes[0]).abs() < 0.01 * state.planes[0].abs());
     let close = |a: f64, b: f64| (a - b).abs() <= 5e-3 * a.abs().max(b.abs());
@@ -181,7 +173,6 @@ fn film_with_loss_damping_and_a_plane_agrees_with_central_differences() {
     );
     assert!(close(a.support_work, b.support_work), "{} {}", a.support_work, b.support_work);
     let largest = residuals(&other_series).into_iter().fold(0.0, f64::max);
-    println!("ledger residual {largest:e}");
     assert!(largest < 1e-3, "{largest:e}");
 }
 
@@ -234,27 +225,17 @@ fn a_hybrid_run_ends_as_an_explicit_one_with_fewer_steps_and_resumes_with_the_sa
     assert_eq!((explicit.stop.clone(), hybrid.stop.clone()), (Stop::Done, Stop::Done));
     let implicit = |event: &&Event| event.kind == EventKind::Implicit;
     let change = hybrid.events.iter().find(implicit).expect("a change to implicit steps");
-    println!(
-        "implicit from {} s; {} and {} steps; residuals {:e} and {:e}",
-        change.time,
-        explicit.steps,
-        hybrid.steps,
-        explicit.audit.ledger_residual,
-        hybrid.audit.ledger_residual
-    );
     assert!(3 * hybrid.steps < 2 * explicit.steps, "{} {}", hybrid.steps, explicit.steps);
     assert!(hybrid.audit.ledger_residual < 1e-3, "{:e}", hybrid.audit.ledger_residual);
     let largest = hybrid.measures.peak_kinetic_energy.expect("film in motion");
     let dissipated = hybrid.history.column("numerical_dissipation");
     let at = hybrid.history.column("time").iter().position(|time| *time >= change.time).unwrap();
     let discarded = dissipated[at] - dissipated[at - 1];
-    println!("discarded at the change: {discarded:e} J of {largest} J");
     assert!((0.0..0.011 * largest).contains(&discarded), "{discarded} {largest}");
     assert_eq!((hybrid.audit.passages, hybrid.audit.intersections), (Some(0), Some(0)));
     let last = |run: &Deployment, column: &str| *run.history.column(column).last().unwrap();
     for (column, tolerance) in [("z_rim", 5e-4), ("volume", 5e-4), ("pressure", 1e-3)] {
         let (a, b) = (last(&explicit, column), last(&hybrid, column));
-        println!("{column}: {a} {b}");
         assert!((b / a - 1.0).abs() < tolerance, "{column}: {a} {b}");
     }
     let mut storing = Storing { steps: hybrid.steps - 200, stored: None };
@@ -283,7 +264,6 @@ fn the_hybrid_takes_no_turning_point_of_a_vibration_for_rest() {
     let largest = kinetic().fold(0.0, f64::max);
     let turns = kinetic().skip(1).filter(|energy| *energy < 0.01 * largest).count();
     let residual = residuals(&ledgers).into_iter().fold(0.0, f64::max);
-    println!("{turns} samples near rest, ledger residual {residual:e}");
     assert!(turns > 0, "no sample at a turning point");
     assert_eq!(film.take_events(), []);
     assert!(residual < 1e-2, "{residual:e}");

@@ -10,12 +10,11 @@
 )]
 
 mod allocation;
+mod bits;
 mod checkpoints;
 mod closures;
 mod conservation;
-mod contact_bits;
 mod equal_meshes;
-mod explicit_bits;
 mod explicit_cases;
 mod exports;
 mod faults;
@@ -32,9 +31,7 @@ mod piston_cases;
 mod quiescence;
 mod rig;
 mod rigid_planes;
-mod shells;
 mod spring;
 mod statics;
 mod storeys_capsule;
 mod system;
-mod velocity_verlet;

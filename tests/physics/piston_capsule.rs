@@ -1,7 +1,5 @@
 //! The paper's capsule as a piston: bands from finer models, failures, invalid scenes.
 
-use std::time::Instant;
-
 use billow_solver::geometry::fold::{FoldDesign, FoldPattern};
 use billow_solver::models::run::{Observer, Progress};
 use billow_solver::models::{self, piston::PistonRun};
@@ -40,7 +38,6 @@ fn the_moving_mass_matches_the_closed_form_of_the_cone() {
     let expected =
         Film::PAPER.area_density() * (pattern.cap_area(3) + share * pattern.lateral_area());
     let mass = run.piston().mass;
-    println!("moving mass {mass}, cone {expected}");
     assert!((mass / expected - 1.0).abs() < 0.05, "{mass} {expected}");
 }
 
@@ -50,16 +47,13 @@ fn the_moving_mass_matches_the_closed_form_of_the_cone() {
 /// the film.
 #[test]
 fn deployment_at_5_g_per_s_is_within_the_bands_of_the_piston_model() {
-    let start = Instant::now();
     let deployment = run(&injected());
-    let wall = start.elapsed();
     assert_eq!(deployment.stop, Stop::Done);
     let (time, z) = (deployment.history.column("time"), deployment.history.column("z_rim"));
     let reaches = |height: f64| time[z.iter().position(|z| *z >= height).expect("reached")];
     let m = &deployment.measures;
     let (half, high) = (reaches(0.5), reaches(0.9));
     let (speed, kinetic) = (m.peak_vz.unwrap(), m.peak_kinetic_energy.unwrap());
-    println!("5 g/s: z 0.5 m at {half} s, 0.9 m at {high} s; {speed} m/s, {kinetic} J; {wall:?}");
     assert!((0.03 * 0.75..0.035 * 1.25).contains(&half), "{half}");
     assert!((0.055 * 0.75..0.055 * 1.25).contains(&high), "{high}");
     assert!((22.0..21.0 * 1.75).contains(&speed), "{speed}");
@@ -71,9 +65,7 @@ fn deployment_at_5_g_per_s_is_within_the_bands_of_the_piston_model() {
 
 #[test]
 fn residual_gas_reaches_the_temperature_of_the_film() {
-    let start = Instant::now();
     let deployment = run(&burst());
-    println!("burst: {:?}, steps {}", start.elapsed(), deployment.steps);
     assert_eq!(deployment.stop, Stop::Done);
     let m = &deployment.measures;
     // 0.05 g at film temperature in V: p = m R T/V.
@@ -136,7 +128,6 @@ fn the_ledger_includes_gravity_and_ambient_pressure() {
     let deployment = run(&scene);
     assert_eq!(deployment.stop, Stop::Done, "{:?}", deployment.audit);
     let last = |name: &str| *deployment.history.column(name).last().unwrap();
-    println!("ground: z {} p {} {:?}", last("z_rim"), last("pressure"), deployment.audit);
     assert!(last("ambient_work") < -100.0 && last("gravity_work") < 0.0);
     assert!(deployment.audit.ledger_residual < 1e-6, "{:?}", deployment.audit);
 }
@@ -270,7 +261,6 @@ fn every_feasible_design_of_a_grid_deploys() {
             }
         }
     }
-    println!("{feasible} feasible designs");
     assert!(feasible >= 20, "{feasible}");
 }
 

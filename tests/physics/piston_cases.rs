@@ -49,7 +49,6 @@ fn fixed_steps_converge_with_order_five() {
         .to_vec();
     for pair in errors.windows(2) {
         let order = (pair[0] / pair[1]).log2();
-        println!("injected piston: errors {:e} {:e}, order {order:.2}", pair[0], pair[1]);
         assert!(order > 4.5, "order {order}, errors {errors:?}");
     }
 }
@@ -77,13 +76,8 @@ fn the_kink_at_full_height_costs_no_accuracy() {
     let reference = on_its_end(adaptive(1e-13)).state();
     let error = |control| (on_its_end(control).state().height - reference.height).abs();
     let tolerances = [1e-6, 1e-8, 1e-10].map(|tolerance| error(adaptive(tolerance)));
-    println!("end film: errors at tolerance 1e-6, 1e-8, 1e-10: {tolerances:?}");
     assert!(tolerances[1] < 1e-7 && tolerances[2] < 1e-9, "{tolerances:?}");
     let (coarse, fine) = (error(fixed(1e-4)), error(fixed(5e-5)));
-    println!(
-        "end film: fixed-step errors {coarse:e} {fine:e}, order {:.2}",
-        (coarse / fine).log2()
-    );
     assert!((coarse / fine).log2() > 4.0, "{coarse:e} {fine:e}");
 }
 

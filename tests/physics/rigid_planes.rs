@@ -52,7 +52,6 @@ fn a_rotated_scene_moves_alike() {
     let (straight, first) = hanging(Rotation3::identity(), 0.45);
     let turn = Rotation3::from_euler_angles(0.3, -1.1, 2.0);
     let (turned, second) = hanging(turn, 0.45);
-    println!("defects {first:e} {second:e}, plane {}", straight.view().state.planes[0]);
     assert!((straight.view().state.planes[0] / turned.view().state.planes[0] - 1.0).abs() < 1e-7);
     for (a, b) in straight.view().state.positions.iter().zip(turned.view().state.positions.iter()) {
         assert!((turn * a - b).norm() < 1e-8, "{a} {b}");
@@ -68,7 +67,6 @@ fn a_rotated_scene_moves_alike() {
 fn the_energy_defect_of_a_plane_falls_with_the_square_of_the_step() {
     let defects: Vec<f64> =
         [0.4, 0.2, 0.1].map(|cfl| hanging(Rotation3::identity(), cfl).1).to_vec();
-    println!("plane ledger defects {defects:?}");
     assert!(defects[2] < 1e-4 && defects[2] < 0.2 * defects[0], "{defects:?}");
 }
 

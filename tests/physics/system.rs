@@ -127,7 +127,6 @@ fn forces_are_minus_the_slope_of_the_energy() {
         let forces = forces(system, &workspace, &evaluation);
         let power: f64 = forces.iter().zip(&directions).map(|(f, u)| f.dot(u)).sum();
         let size: f64 = forces.iter().zip(&directions).map(|(f, u)| f.dot(u).abs()).sum();
-        println!("{name}: slope {slope:e}, power {power:e}, size {size:e}");
         assert!((slope + power).abs() < 2e-6 * size, "{name}: {slope} {power} of {size}");
         assert!(evaluation.contact != 0.0 || system.contact.is_none(), "{name}");
         // At the state itself the conservative forces are those of the run but for its numerical stress.
@@ -167,7 +166,6 @@ fn the_stiffness_is_minus_the_slope_of_the_forces() {
             after.iter().zip(&before).map(|(a, b)| (b - a) / (2.0 * small)).collect();
         let off: Vec<Vector3<f64>> = slope.iter().zip(&product).map(|(a, b)| a - b).collect();
         let (off, size) = (norm(&off), norm(&product));
-        println!("{name}: stiffness off by {:e}", off / size);
         assert!(off < 1e-4 * size, "{name}: {off} of {size}");
     }
 }
@@ -212,7 +210,6 @@ fn a_safe_step_lets_nothing_through() {
         let displacements = apart(factor);
         let share = system.safe_step(at, &displacements, &mut Workspace::new(system, state));
         let after = gaps(&moved(&displacements, share));
-        println!("{factor} m: share {share}, gap {before:e} to {after:e}");
         assert!(share > 0.0 && share < 1.0, "{factor}: {share}");
         assert!(after >= 0.0999 * before, "{factor}: {before} to {after}");
     }

@@ -1,0 +1,97 @@
+//! The paper's capsule without and with contact: the same bits on every instruction set, and in a run resumed from any
+//! step.
+
+use billow_solver::integrators::FilmSimulation;
+use billow_solver::mechanics::forces::membrane::numerical_forces;
+use billow_solver::models::film::capsule;
+use billow_solver::platform::simd::InstructionSet;
+use billow_solver::scene::film_scene::FilmContact;
+use billow_solver::scene::monitor_settings::MonitorSettings;
+
+use crate::film_rig::{INFLOW, explicit, resumed, stowed, text};
+use crate::rig::paper_scene;
+
+/// The paper's capsule, stowed; in contact with friction and full stiffness, and with a monitor that checks every step
+/// of about half of the blocks.
+fn film(set: InstructionSet, in_contact: bool) -> FilmSimulation {
+    let mut scene = paper_scene();
+    scene.design.subdivisions = 3;
+    scene.film.compression = if in_contact { 1.0 } else { 0.01 };
+    scene.gravity = if in_contact { 0.0 } else { -9.8 };
+    let mut film = stowed(set, &scene, 0.45);
+    if in_contact {
+        let monitor = MonitorSettings { block: 50, dense_block_period: 2, seed: 1 };
+        film.contact = Some(FilmContact { friction: 0.2, monitor, ..FilmContact::default() });
+    }
+    capsule::start(&film, &[]).unwrap()
+}
+
+#[test]
+fn every_instruction_set_gives_the_same_bits() {
+    for (in_contact, time) in [(false, 8e-3), (true, 0.02)] {
+        let end = |set: InstructionSet| {
+            let mut film = film(set, in_contact);
+            film.advance(time, &INFLOW).unwrap();
+            film
+        };
+        let scalar = end(InstructionSet::Scalar);
+        let touches = scalar.view().accounting().works.contact != 0.0
+            && scalar.view().ledger().contact_dissipation != 0.0;
+        assert_eq!(touches, in_contact);
+        for set in InstructionSet::ALL.into_iter().filter(|set| set.available()) {
+            let film = end(set);
+            let (a, b, name) = (film.view(), scalar.view(), set.name());
+            assert!(text(&film) == text(&scalar), "{name}");
+            assert!(a.forces() == b.forces(), "{name}");
+            assert_eq!(a.ledger(), b.ledger(), "{name}");
+            assert_eq!(a.smallest_gap().to_bits(), b.smallest_gap().to_bits(), "{name}");
+            let audited = [a, b].map(|view| (view.passages(), view.intersections()));
+            assert_eq!(audited[0], audited[1], "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_resumed_run_has_the_same_bits_from_any_step() {
+    let cases: [(bool, &[f64], &[u64]); 2] =
+        [(false, &[2e-3, 3e-3], &[0, 1, 7, 40, 100]), (true, &[0.02], &[1, 100, 777, 1300])];
+    for (in_contact, targets, pauses) in cases {
+        let mut whole = film(InstructionSet::detect(), in_contact);
+        for target in targets {
+            whole.advance(*target, &INFLOW).unwrap();
+        }
+        assert!(!in_contact || explicit(&whole).path_length > 0.1);
+        for pause in pauses {
+            let mut film = film(InstructionSet::detect(), in_contact);
+            let mut steps = *pause;
+            for target in targets {
+                while !film.advance_at_most(*target, &INFLOW, &mut steps).unwrap() {
+                    // To text and back, as a checkpoint does.
+                    film = resumed(film);
+                    steps = u64::MAX;
+                }
+            }
+            assert!(text(&film) == text(&whole), "paused after {pause} steps");
+        }
+    }
+}
+
+/// Two targets differ by rounding. Over such a short step, the rounding error of a stress must not
+/// count as a stress rate.
+#[test]
+fn a_step_of_rounding_length_does_not_change_numerical_forces() {
+    let mut film = film(InstructionSet::detect(), false);
+    film.advance(2e-3, &INFLOW).unwrap();
+    let damping = |film: &FilmSimulation| {
+        let (now, histories) = (film.view(), explicit(film).histories);
+        numerical_forces(&now.system.model, &now.state.positions, &histories)
+    };
+    let (before, steps) = (damping(&film), film.view().steps());
+    film.advance(2e-3_f64.next_up(), &INFLOW).unwrap();
+    assert_eq!(film.view().steps(), steps + 1);
+    let size = before.iter().map(|force| force.norm()).fold(0.0, f64::max);
+    assert!(size > 0.0);
+    for (now, before) in damping(&film).iter().zip(before.iter()) {
+        assert!((now - before).norm() < 1e-9 * size, "{now} {before}");
+    }
+}
