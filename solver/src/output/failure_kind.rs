@@ -45,24 +45,8 @@ impl FailureKind {
         }
     }
 
-    /// The kind of that name; also accepts `drifted`, the name of [`Self::EnergyDrift`] in results of
-    /// earlier versions.
+    /// The kind of that name.
     pub fn from_name(name: &str) -> Option<Self> {
-        let name = if name == "drifted" { Self::EnergyDrift.name() } else { name };
         Self::ALL.into_iter().find(|kind| kind.name() == name)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_name_is_read_back_and_the_old_one_too() {
-        for kind in FailureKind::ALL {
-            assert_eq!(FailureKind::from_name(kind.name()), Some(kind));
-        }
-        assert_eq!(FailureKind::from_name("drifted"), Some(FailureKind::EnergyDrift));
-        assert_eq!(FailureKind::from_name("done"), None);
     }
 }

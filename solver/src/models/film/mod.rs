@@ -264,10 +264,6 @@ fn mean_z(field: &Field, nodes: &[u32]) -> f64 {
 }
 
 impl Model for FilmRun {
-    fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure> {
-        self.film.advance(target, phase)
-    }
-
     fn advance_at_most(
         &mut self,
         target: f64,

@@ -203,21 +203,17 @@ impl PistonRun {
         GasBalance {
             mass: state[MASS],
             internal_energy: state[INTERNAL_ENERGY],
-            mass_in: 0.0,
             mass_out: state[MASS_OUT],
             enthalpy_in: state[ENTHALPY_IN],
             enthalpy_out: state[ENTHALPY_OUT],
             heat: state[HEAT],
             gas_work: state[GAS_WORK],
+            ..GasBalance::default()
         }
     }
 }
 
 impl Model for PistonRun {
-    fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure> {
-        self.advance_at_most(target, phase, &mut u64::MAX.clone()).map(|_| ())
-    }
-
     fn advance_at_most(
         &mut self,
         target: f64,
@@ -256,8 +252,7 @@ impl Model for PistonRun {
             lid_force: if phase.packed { push.max(0.0) } else { 0.0 },
             ledger: self.ledger(),
             gas: self.gas_balance(),
-            passages: 0,
-            intersections: 0,
+            ..Sample::default()
         }
     }
 
@@ -284,13 +279,5 @@ impl Model for PistonRun {
 
     fn steps(&self) -> u64 {
         self.integrator.steps
-    }
-
-    fn elements(&self) -> usize {
-        0
-    }
-
-    fn counts_passages(&self) -> bool {
-        false
     }
 }

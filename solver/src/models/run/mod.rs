@@ -22,7 +22,9 @@ pub trait Model {
     ///
     /// # Errors
     /// [`Failure`] if the run stops early; the state is that of the last accepted step.
-    fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure>;
+    fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure> {
+        self.advance_at_most(target, phase, &mut u64::MAX.clone()).map(|_| ())
+    }
 
     /// Advances towards `target` as [`Self::advance`], by at most `steps` steps, and subtracts the steps
     /// taken from `steps`. Returns whether it reached the target. A model that cannot pause always does.
@@ -33,10 +35,8 @@ pub trait Model {
         &mut self,
         target: f64,
         phase: &Phase,
-        _steps: &mut u64,
-    ) -> Result<bool, Failure> {
-        self.advance(target, phase).map(|()| true)
-    }
+        steps: &mut u64,
+    ) -> Result<bool, Failure>;
 
     /// The decisions of the step controller since the last call.
     fn take_events(&mut self) -> Vec<Event> {
@@ -84,10 +84,14 @@ pub trait Model {
     fn steps(&self) -> u64;
 
     /// Number of elements of its mesh.
-    fn elements(&self) -> usize;
+    fn elements(&self) -> usize {
+        0
+    }
 
     /// Whether it counts passages and intersections. A model without a mesh or without contact does not.
-    fn counts_passages(&self) -> bool;
+    fn counts_passages(&self) -> bool {
+        false
+    }
 
     /// Passages of film through film counted so far.
     fn passages(&self) -> u64 {

@@ -26,13 +26,18 @@ impl Recorder {
 }
 
 impl Model for Recorder {
-    fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure> {
+    fn advance_at_most(
+        &mut self,
+        target: f64,
+        phase: &Phase,
+        _: &mut u64,
+    ) -> Result<bool, Failure> {
         assert!(target > self.time(), "time increases");
         if target > self.fails_after {
             return Err(Failure::new(AuditKind::FiniteMotion, self.fails_after, "a test"));
         }
         self.calls.push((target, *phase));
-        Ok(())
+        Ok(true)
     }
 
     fn sample(&self, _: &Phase) -> Sample {

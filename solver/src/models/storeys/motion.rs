@@ -253,10 +253,6 @@ impl StoreysRun {
 }
 
 impl Model for StoreysRun {
-    fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure> {
-        self.advance_at_most(target, phase, &mut u64::MAX.clone()).map(|_| ())
-    }
-
     fn advance_at_most(
         &mut self,
         target: f64,
@@ -324,8 +320,7 @@ impl Model for StoreysRun {
                 mass_in: 0.0,
                 ..self.balance
             },
-            passages: 0,
-            intersections: 0,
+            ..Sample::default()
         }
     }
 
@@ -349,13 +344,5 @@ impl Model for StoreysRun {
 
     fn steps(&self) -> u64 {
         self.steps
-    }
-
-    fn elements(&self) -> usize {
-        0
-    }
-
-    fn counts_passages(&self) -> bool {
-        false
     }
 }

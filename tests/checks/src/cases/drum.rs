@@ -11,7 +11,7 @@
 
 use core::f64::consts::TAU;
 
-use billow_solver::geometry::shapes::{disc, disc_rim};
+use billow_solver::geometry::shapes::disc;
 use billow_solver::integrators::FilmSimulation;
 use billow_solver::scene::film_scene::FilmScene;
 use billow_solver::scene::paper::free_film;
@@ -22,6 +22,7 @@ use super::oscillation::frequency;
 use super::reference::{entry, rows};
 use super::rig::held;
 use super::row::richardson;
+use super::shapes::disc_rim;
 use super::{Outcome, Rig, Row};
 
 /// CFL number. Chosen: a period takes thousands of steps, so the error of the step is about 1e-8.

@@ -1,12 +1,12 @@
 //! A column of gas between two square plates of film, for the cases of gas in a vessel and under a
 //! piston.
 
-use billow_solver::geometry::shapes::gas_column;
 use billow_solver::geometry::shell::Shell;
 use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
 use nalgebra::Vector3;
 
 use super::rig::held;
+use super::shapes::gas_column;
 
 /// Nodes of the lower plate.
 const LOWER: [u32; 4] = [0, 1, 2, 3];

@@ -45,6 +45,7 @@ mod invariants;
 mod moving_fold;
 mod oscillation;
 pub(crate) mod piston_model;
+pub mod shapes;
 pub(crate) mod sphere_motion;
 pub(crate) mod static_airbag;
 mod static_compliant;

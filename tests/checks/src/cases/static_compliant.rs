@@ -1,7 +1,7 @@
 //! Compliant film of revolution at stretches of 8 to 45 %: a held disc, a frustum between rings, the
 //! capsule with circular caps as a free body. The references are integrated along a meridian.
 
-use billow_solver::geometry::shapes::{capped_frustum, disc, disc_rim, revolved, ring_nodes};
+use billow_solver::geometry::shapes::{disc, revolved, ring_nodes};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
@@ -12,6 +12,7 @@ use billow_solver::statics::StaticSolution;
 use super::axisymmetric::{self, Frustum};
 use super::reference::{entry, number, rows};
 use super::rig::held;
+use super::shapes::{capped_frustum, disc_rim};
 use super::static_equilibrium::{equilibrium, mean};
 use super::{Outcome, Rig, Row};
 

@@ -7,7 +7,7 @@
 //! revolution. It is an equilibrium but not the one of least energy: a rim with deep dents encloses
 //! more volume. A mesh of six sectors, oblique to the meridians, finds such dented states.
 
-use billow_solver::geometry::shapes::{disc, disc_rim, radial_disc, ring_nodes};
+use billow_solver::geometry::shapes::{disc, ring_nodes};
 use billow_solver::mechanics::resultants::resultants;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
@@ -16,6 +16,7 @@ use nalgebra::Vector3;
 
 use super::reference::{entry, rows};
 use super::rig::held;
+use super::shapes::{disc_rim, radial_disc};
 use super::static_equilibrium::{equilibrium, mean};
 use super::{Outcome, Rig, Row};
 

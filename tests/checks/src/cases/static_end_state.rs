@@ -7,7 +7,6 @@
 
 use billow_solver::geometry::fold::{Caps, FoldDesign, FoldPattern};
 use billow_solver::geometry::mesh::{Mesh, Shape};
-use billow_solver::geometry::shapes::capped_frustum;
 use billow_solver::geometry::shell::Shell;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
@@ -16,6 +15,7 @@ use billow_solver::statics::StaticSolution;
 use nalgebra::Vector3;
 
 use super::reference::{entry, number, numbers, rows};
+use super::shapes::capped_frustum;
 use super::static_equilibrium::{equilibrium_from, mean};
 use super::{Outcome, Rig, Row};
 

@@ -2,7 +2,8 @@
 //! their histories.
 
 use billow_checks::cases::rig::held;
-use billow_solver::geometry::shapes::{gas_column, ring_nodes, sheet, tube};
+use billow_checks::cases::shapes::gas_column;
+use billow_solver::geometry::shapes::{ring_nodes, sheet, tube};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::models;
 use billow_solver::models::film::FilmRun;
