@@ -149,16 +149,6 @@ impl Material {
         relaxed + self.compression * (full - relaxed)
     }
 
-    /// `S_full` = C:e, Pa: the stress without relaxation.
-    pub fn full_stress(&self, strain: PlaneTensor) -> PlaneTensor {
-        let (k, nu) = (self.plane_modulus, self.poisson_ratio);
-        PlaneTensor {
-            xx: (strain.xx + strain.yy * nu) * k,
-            yy: (strain.yy + strain.xx * nu) * k,
-            xy: strain.xy * (k * (1.0 - nu)),
-        }
-    }
-
     /// S of eight elements at their strains.
     ///
     /// ```text

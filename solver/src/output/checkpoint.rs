@@ -15,7 +15,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::PHYSICS_VERSION;
-use crate::platform::seal::{self, SealError};
+use crate::platform::seal;
 
 /// Name of the format.
 pub const FORMAT: &str = "billow-checkpoint";
@@ -105,17 +105,7 @@ impl<S: Serialize + DeserializeOwned, R: Serialize + DeserializeOwned> Checkpoin
     /// # Errors
     /// [`CheckpointError`].
     pub fn from_text(text: &str, scene: &str) -> Result<Self, CheckpointError> {
-        match seal::open(text) {
-            Ok(object) => Self::read(&object, scene),
-            // Versions before 3 have no checksum.
-            Err(SealError::Missing) => match serde_json::from_str::<Head>(text) {
-                Ok(head) if head.format == FORMAT && head.version < VERSION => {
-                    Err(CheckpointError::Version { found: head.version })
-                }
-                _ => Err(invalid(SealError::Missing)),
-            },
-            Err(error) => Err(invalid(error)),
-        }
+        Self::read(&seal::open(text).map_err(invalid)?, scene)
     }
 
     /// Reads the text without its checksum.
@@ -178,18 +168,14 @@ mod tests {
     }
 
     #[test]
-    fn older_and_newer_versions_are_refused_by_their_number() {
+    fn other_versions_are_refused_by_their_number() {
         let object = seal::open(&text()).unwrap();
-        let of = |version: u32| object.replace("\"version\":4", &format!("\"version\":{version}"));
-        for version in [1, 2] {
-            let refused = Numbers::from_text(&of(version), "scene");
-            assert_eq!(refused, Err(CheckpointError::Version { found: version }));
-        }
         for version in [3, 5] {
-            let refused = Numbers::from_text(&seal::seal(&of(version)), "scene");
+            let other = object.replace("\"version\":4", &format!("\"version\":{version}"));
+            let refused = Numbers::from_text(&seal::seal(&other), "scene");
             assert_eq!(refused, Err(CheckpointError::Version { found: version }));
         }
-        // A text of this version without a checksum was changed.
+        // A text without a checksum was changed.
         assert!(matches!(Numbers::from_text(&object, "scene"), Err(CheckpointError::Invalid(_))));
     }
 }
