@@ -3,13 +3,13 @@
 use billow_solver::geometry::field::Field;
 use billow_solver::integrators::explicit::StoredExplicit;
 use billow_solver::integrators::hybrid::StoredActive;
-use billow_solver::integrators::implicit::Ahead;
+use billow_solver::integrators::implicit::PendingStep;
 use billow_solver::integrators::{StoredFilm, StoredIntegrator};
 use billow_solver::system::{FilmState, FilmSystem};
 use nalgebra::Vector3;
 
 /// The step that goes beyond the state, if there is one.
-pub fn ahead(stored: &mut StoredIntegrator) -> Option<&mut Ahead> {
+pub fn ahead(stored: &mut StoredIntegrator) -> Option<&mut PendingStep> {
     match stored {
         StoredIntegrator::Implicit(stored) => stored.motion.ahead.as_deref_mut(),
         StoredIntegrator::Hybrid(stored) => match &mut stored.active {

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use crate::geometry::field::Field;
 use crate::integrators::explicit::{Explicit, StoredExplicit};
 use crate::integrators::implicit::{
-    Implicit, Newton, Patience, Progress, StepControl, StoredImplicit,
+    GiveUpLimits, Implicit, Newton, Progress, StepControl, StoredImplicit,
 };
 use crate::integrators::interface::{Advance, Budget, Computed, Integrator, Interval};
 use crate::integrators::{IntegratorEntry, StoredIntegrator, implicit};
@@ -224,7 +224,7 @@ impl Hybrid {
         let mut implicit = Implicit::from(system, &slow, scratch, steps, accounting);
         let after = implicit.ledger(system, &slow).stored();
         implicit.add_numerical_dissipation(before.stored() - after);
-        if implicit.begin(system, &slow, interval.phase, self.patience(), budget.audit)? {
+        if implicit.begin(system, &slow, interval.phase, self.give_up_limits(), budget.audit)? {
             self.policy.pause = FIRST_PAUSE;
             self.active = Active::Implicit(Box::new(implicit));
             *state = slow;
@@ -254,8 +254,8 @@ impl Hybrid {
         events.push(Event { time: state.time, kind: EventKind::Explicit });
     }
 
-    fn patience(&self) -> Patience {
-        Patience {
+    fn give_up_limits(&self) -> GiveUpLimits {
+        GiveUpLimits {
             step: PAYING_STEPS * self.policy.stable_step,
             kinetic: MOTION * self.policy.largest_kinetic_energy,
         }
@@ -287,7 +287,7 @@ impl Integrator for Hybrid {
         mut budget: Budget<'_>,
     ) -> Result<Advance, Failure> {
         loop {
-            let patience = self.patience();
+            let give_up = self.give_up_limits();
             match &mut self.active {
                 Active::Explicit(explicit) => {
                     let advance = explicit.advance(state, system, interval, budget.reborrow())?;
@@ -302,7 +302,7 @@ impl Integrator for Hybrid {
                         system,
                         interval,
                         &mut budget,
-                        Some(patience),
+                        Some(give_up),
                     )?;
                     match progress {
                         Progress::Advanced(advance) => return Ok(advance),

@@ -10,12 +10,12 @@
 
 use nalgebra::Vector3;
 
-use super::motion::Ahead;
+use super::motion::PendingStep;
 use crate::integrators::energy_accounting::EnergyAccounting;
 use crate::mechanics::gas::GasState;
 use crate::system::{FilmState, FilmSystem};
 
-impl Ahead {
+impl PendingStep {
     /// State and accounting at a time (s) within the step; volume, pressure and contacts are those of its start.
     pub(super) fn at(&self, system: &FilmSystem, time: f64) -> (FilmState, EnergyAccounting) {
         let ((from, before), (to, after)) = (&self.from, &self.to);

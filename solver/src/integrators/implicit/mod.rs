@@ -38,7 +38,7 @@ mod step;
 pub mod step_control;
 
 pub use method::LastStep;
-pub use motion::{Ahead, ImplicitMotion, StoredImplicit};
+pub use motion::{ImplicitMotion, PendingStep, StoredImplicit};
 pub use step_control::StepControl;
 
 /// The row in the table of integrators.
@@ -57,13 +57,13 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
 const FIRST_STEP: f64 = 5.0;
 /// Most Newton steps, and those of a run that can be given up. Chosen: a shorter step, or explicit ones, cost less.
 const MAX_ITERATIONS: u32 = 25;
-const PATIENT_ITERATIONS: u32 = 12;
+const GIVE_UP_ITERATIONS: u32 = 12;
 /// Smallest step over 1/ω: shorter ones need no implicit method. Chosen.
 const MIN_STEP: f64 = 0.02;
 
 /// Why an implicit run gives a system back: then another integrator does better.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Patience {
+pub(super) struct GiveUpLimits {
     /// Smallest step that pays, s.
     pub(super) step: f64,
     /// Largest kinetic energy, J.
@@ -75,7 +75,7 @@ pub(super) struct Patience {
 pub(super) enum Progress {
     /// As [`Advance`].
     Advanced(Advance),
-    /// Before the end of the interval, at the end of a step: [`Patience`] is exhausted.
+    /// Before the end of the interval, at the end of a step: a limit of [`GiveUpLimits`] is exceeded.
     GaveUp,
 }
 
@@ -173,7 +173,7 @@ impl Implicit {
         system: &FilmSystem,
         Interval { target, phase }: Interval<'_>,
         budget: &mut Budget<'_>,
-        patience: Option<Patience>,
+        give_up: Option<GiveUpLimits>,
     ) -> Result<Progress, Failure> {
         while state.time < target {
             if let Some(ahead) = self.motion.ahead.take() {
@@ -206,11 +206,11 @@ impl Implicit {
                 budget.audit.record(system, state)?;
                 continue;
             }
-            let limit = if patience.is_some() { phase.end.max(target) } else { target };
-            let Some(stepped) = self.step(system, state, (target, limit), phase.inflow, patience)
+            let limit = if give_up.is_some() { phase.end.max(target) } else { target };
+            let Some(stepped) = self.step(system, state, (target, limit), phase.inflow, give_up)
             else {
                 self.evaluate(system, state);
-                if patience.is_some() {
+                if give_up.is_some() {
                     return Ok(Progress::GaveUp);
                 }
                 return Err(failure(state, "no step of the implicit method has a solution"));
@@ -250,13 +250,13 @@ impl Implicit {
         state: &FilmState,
         (target, limit): (f64, f64),
         inflow: Inflow,
-        patience: Option<Patience>,
+        give_up: Option<GiveUpLimits>,
     ) -> Option<Stepped> {
         let control = self.motion.control;
         let mut length = self.motion.next_step.min(control.longest());
-        let iterations = if patience.is_some() { PATIENT_ITERATIONS } else { MAX_ITERATIONS };
+        let iterations = if give_up.is_some() { GIVE_UP_ITERATIONS } else { MAX_ITERATIONS };
         let smallest =
-            patience.map_or(MIN_STEP / system.model.largest_frequency(), |patience| patience.step);
+            give_up.map_or(MIN_STEP / system.model.largest_frequency(), |give_up| give_up.step);
         loop {
             let end = next_end(state.time, length, target, limit);
             let planned = end - state.time;
@@ -271,9 +271,9 @@ impl Implicit {
                     control.next(planned, *error, *order)
                 }
             };
-            if let Some(patience) = patience
+            if let Some(give_up) = give_up
                 && let Some(stepped) = &stepped
-                && system.kinetic_energy(&stepped.state) > patience.kinetic
+                && system.kinetic_energy(&stepped.state) > give_up.kinetic
             {
                 return None;
             }
@@ -312,7 +312,7 @@ impl Implicit {
         })?;
         let from = (state.clone(), self.motion.accounting);
         let to = (stepped.state, stepped.accounting);
-        self.motion.ahead = Some(Box::new(Ahead { from, to }));
+        self.motion.ahead = Some(Box::new(PendingStep { from, to }));
         Ok(())
     }
 
@@ -325,12 +325,12 @@ impl Implicit {
         system: &FilmSystem,
         state: &FilmState,
         phase: &Phase,
-        patience: Patience,
+        give_up: GiveUpLimits,
         audit: &mut dyn StepAudit,
     ) -> Result<bool, Failure> {
         self.motion.begin_phase(phase.packed, phase.inflow);
         let limits = (state.time, phase.end);
-        let Some(stepped) = self.step(system, state, limits, phase.inflow, Some(patience)) else {
+        let Some(stepped) = self.step(system, state, limits, phase.inflow, Some(give_up)) else {
             return Ok(false);
         };
         self.go_ahead(state, stepped, audit)?;
@@ -378,7 +378,7 @@ impl Integrator for Implicit {
     ) -> Result<Advance, Failure> {
         match self.advance_within(state, system, interval, &mut budget, None)? {
             Progress::Advanced(advance) => Ok(advance),
-            Progress::GaveUp => unreachable!("without patience it does not give up"),
+            Progress::GaveUp => unreachable!("without limits it does not give up"),
         }
     }
 

@@ -34,7 +34,7 @@ pub struct ImplicitMotion {
     /// Whether the film was packed in the last interval, and the mass flow rate (kg/s).
     pub phase: (bool, f64),
     /// The step that goes beyond the state, if there is one.
-    pub ahead: Option<Box<Ahead>>,
+    pub ahead: Option<Box<PendingStep>>,
     /// Energy accounting since time 0, at the state.
     pub accounting: EnergyAccounting,
 }
@@ -42,7 +42,7 @@ pub struct ImplicitMotion {
 /// A step that goes beyond the time of the state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Ahead {
+pub struct PendingStep {
     /// State and accounting at its start.
     pub from: (FilmState, EnergyAccounting),
     /// State and accounting at its end.
