@@ -74,7 +74,7 @@ readers: program reader-deps
 	results=$$(mktemp -d); trap 'rm -rf "$$results"' EXIT; \
 	for study in piston film; do \
 	    $(BILLOW) run tests/readers/$$study.json --results "$$results/$$study" --quiet > /dev/null; \
-	    $(BILLOW) export "$$results/$$study" --cube "$$results/$$study.nc" > /dev/null; \
+	    $(BILLOW) export "$$results/$$study" --out "$$results/$$study.nc" > /dev/null; \
 	    tests/readers/check.sh "$$results/$$study" "$$results/$$study.nc"; \
 	done
 

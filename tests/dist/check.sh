@@ -32,5 +32,5 @@ cat > study.json << 'STUDY'
 STUDY
 run=(env -i "HOME=$folder" ./billow)
 "${run[@]}" run study.json --quiet > /dev/null
-"${run[@]}" export results/study --cube study.nc
+"${run[@]}" export results/study --out study.nc
 echo "$(basename "$archive"): $(du -h "$archive" | cut -f 1), its program needs only libc, libm and libgcc"

@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::json;
 
-use crate::support::{TestFolder, grid, stderr};
+use crate::support::{TestFolder, grid};
 
 /// N × ratio × flow × end time with the piston: infeasible points, and runs that end before deployment.
 fn study() -> serde_json::Value {
@@ -36,8 +36,7 @@ fn size(png: &[u8]) -> [u32; 2] {
 
 #[test]
 fn every_kind_is_drawn_as_svg_and_png() {
-    let folder = TestFolder::new(&study());
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study());
     let feasible = "alpha1_over_phi == 9";
     for (arguments, name, expected) in [
         (
@@ -86,8 +85,7 @@ fn every_kind_is_drawn_as_svg_and_png() {
 fn the_default_set_is_drawn_with_reproducible_bytes() {
     let mut study = study();
     study["grid"].as_object_mut().unwrap().remove("solver.end_time");
-    let folder = TestFolder::new(&study);
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study);
     let read = || -> Vec<(String, Vec<u8>)> {
         let printed = folder.stdout(&["chart", "grid.json", "--json"]);
         let rows: serde_json::Value = serde_json::from_str(&printed).unwrap();
@@ -117,8 +115,7 @@ fn the_default_set_is_drawn_with_reproducible_bytes() {
 
 #[test]
 fn jobs_are_selected_by_id_prefix_and_formats_by_file_extension() {
-    let folder = TestFolder::new(&study());
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study());
     let rows = folder.rows("results/grid");
     let done: Vec<&str> = rows
         .iter()
@@ -138,8 +135,7 @@ fn jobs_are_selected_by_id_prefix_and_formats_by_file_extension() {
 
 #[test]
 fn invalid_charts_give_exit_code_2_and_no_file() {
-    let folder = TestFolder::new(&study());
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study());
     for (arguments, expected) in [
         (&["--history", "z_rims"][..], "did you mean z_rim?"),
         (&["--measure", "peak_v", "--over", "N"], "did you mean peak_vz?"),
@@ -160,24 +156,18 @@ fn invalid_charts_give_exit_code_2_and_no_file() {
         (&["--title", "Mine"], "one title for several charts"),
         (&["nowhere"], "nowhere"),
     ] {
-        let output = folder.run(&[&["chart"], arguments].concat());
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));
-        assert!(stderr(&output).contains(expected), "{arguments:?}: {}", stderr(&output));
-        assert!(output.stdout.is_empty());
+        folder.refuses(&[&["chart"], arguments].concat(), expected);
     }
     assert!(!folder.results().join("charts").exists());
 }
 
 #[test]
 fn a_lost_history_is_reported_and_nothing_is_drawn() {
-    let folder = TestFolder::new(&study());
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study());
     let row = folder.rows("results/grid").into_iter().find(|row| row["status"] == "done").unwrap();
     let job = row["job"].as_str().unwrap();
     fs::remove_file(folder.results().join(format!("jobs/{}/{job}.h5", &job[..2]))).unwrap();
-    let output = folder.run(&["chart", "--history", "vz"]);
-    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
-    assert!(stderr(&output).contains(job), "{}", stderr(&output));
+    folder.refuses(&["chart", "--history", "vz"], job);
     assert!(!folder.results().join("charts").exists());
 }
 
@@ -204,8 +194,7 @@ fn question() -> serde_json::Value {
 
 #[test]
 fn the_default_set_of_a_question_shows_borders_limits_and_medians() {
-    let folder = TestFolder::new(&question());
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&question());
     let printed = folder.stdout(&["chart", "grid.json", "-q"]);
     let charts = "results/grid/charts";
     let read = |name: &str| {

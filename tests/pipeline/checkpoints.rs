@@ -9,15 +9,12 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 
 use crate::interruption::signal;
-use crate::support::{TestFolder, histories, ids, stderr, without_costs};
+use crate::support::{TestFolder, histories, ids, paper_design, stderr, without_costs};
 
 /// One long film job on the coarsest mesh, packed at first, and a short one.
 fn study() -> Value {
     json!({
-        "design": {
-            "N": 6, "M": 3, "bottom_radius": "500 mm", "top_radius": "365 mm", "height": "1 m",
-            "subdivisions": 2
-        },
+        "design": paper_design(2),
         "solver": {"model": "film"},
         "strategies": {"packed": {"release_time": "5 ms"}},
         "strategy": "packed",
@@ -32,8 +29,7 @@ fn rows(folder: &TestFolder) -> Vec<Value> {
 }
 
 fn undisturbed() -> TestFolder {
-    let folder = TestFolder::new(&study());
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study());
     folder
 }
 

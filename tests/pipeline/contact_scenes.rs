@@ -7,15 +7,12 @@ use billow_study::store::history_file;
 use serde_json::{Value, json};
 
 use crate::solve::{done, number, scene_folder, solve};
-use crate::support::stderr;
+use crate::support::{paper_design, stderr};
 
 /// The paper's capsule on a coarse mesh for 20 ms, with changed keys.
 fn capsule(changes: &Value) -> Value {
     let mut scene = json!({
-        "design": {
-            "N": 6, "M": 3, "bottom_radius": "500 mm", "top_radius": "365 mm", "height": 1,
-            "subdivisions": 2,
-        },
+        "design": paper_design(2),
         "film": {"compression": 0, "numerical_damping": 0.1},
         "gas": {"windows": [{"from": 0, "mass_flow_rate": "5 g/s"}]},
         "solver": {"end_time": "20 ms"},

@@ -22,13 +22,11 @@ fn one_and_two_threads_give_the_same_bits() {
 
 #[test]
 fn a_job_has_the_same_history_in_every_study() {
-    let whole = TestFolder::new(&small_grid());
-    whole.stdout(&["run", "grid.json", "-q"]);
+    let whole = TestFolder::finished(&small_grid());
     let mut study = small_grid();
     study["grid"]["N"] = serde_json::json!([6]);
     study["grid"]["M"] = serde_json::json!([3, 2]);
-    let part = TestFolder::new(&study);
-    part.stdout(&["run", "grid.json", "-q"]);
+    let part = TestFolder::finished(&study);
     let all = histories(&whole.results());
     let some = histories(&part.results());
     assert_eq!(some.len(), 8);

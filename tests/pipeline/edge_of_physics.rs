@@ -3,15 +3,12 @@
 use serde_json::{Value, json};
 
 use crate::solve::{CUBE, cube, scene_folder, solve};
-use crate::support::{TestFolder, stderr};
+use crate::support::{TestFolder, paper_design, stderr};
 
 /// The paper's capsule on a coarse film.
 fn study(subdivisions: u32, end_time: &str, grid: &Value) -> Value {
     json!({
-        "design": {
-            "N": 6, "M": 3, "bottom_radius": "500 mm", "top_radius": "365 mm", "height": "1 m",
-            "subdivisions": subdivisions,
-        },
+        "design": paper_design(subdivisions),
         "gas": {"mass_flow_rate": "5 g/s"},
         "solver": {"model": "film", "end_time": end_time},
         "outputs": {"frames": 0},

@@ -1,13 +1,13 @@
-//! `export --cube`: the file, its message, what is refused.
+//! `export --out`: the file, its message, what is refused.
 
 use serde_json::json;
 
-use crate::support::{TestFolder, grid, json_of, ran, stderr};
+use crate::support::{TestFolder, grid, json_of, ran};
 
 #[test]
 fn a_cube_holds_every_done_job_over_the_axes_of_the_grid() {
     let folder = ran();
-    let rows = json_of(&folder, &["export", "results/grid", "--cube", "grid.nc"]);
+    let rows = json_of(&folder, &["export", "results/grid", "--out", "grid.nc"]);
     let row = &rows.as_array().unwrap()[0];
     let dimensions = row["dimensions"].as_str().unwrap();
     let grid = "M 2, N 2, alpha1_over_phi 3, mass_flow_rate 1, residual_gas_mass 2, time 601";
@@ -17,9 +17,9 @@ fn a_cube_holds_every_done_job_over_the_axes_of_the_grid() {
     let file = std::fs::read(folder.path().join("grid.nc")).unwrap();
     assert_eq!(&file[..8], b"\x89HDF\r\n\x1a\n");
     // The same results and program give the same bytes.
-    folder.stdout(&["export", "results/grid", "--cube", "again.h5"]);
+    folder.stdout(&["export", "results/grid", "--out", "again.h5"]);
     assert_eq!(std::fs::read(folder.path().join("again.h5")).unwrap(), file);
-    let few = json_of(&folder, &["export", "--cube", "few.nc", "--columns", "z_rim,volume"]);
+    let few = json_of(&folder, &["export", "--out", "few.nc", "--columns", "z_rim,volume"]);
     assert!(few[0]["variables"].as_u64() < row["variables"].as_u64());
 }
 
@@ -30,13 +30,11 @@ fn a_cube_that_is_not_possible_is_refused_with_exit_code_2_and_leaves_no_file() 
         "outputs.sample_interval": ["1 ms", "2 ms"]
     })));
     let refused = |arguments: &[&str], expected: &str| {
-        let output = folder.run(arguments);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-        assert!(stderr(&output).contains(expected), "{}", stderr(&output));
+        folder.refuses(arguments, expected);
         assert!(!folder.path().join("grid.nc").exists());
     };
-    refused(&["export", "grid.json", "--cube", "grid.nc"], "no results here");
+    refused(&["export", "grid.json", "--out", "grid.nc"], "no results here");
     folder.stdout(&["run", "grid.json", "-q"]);
-    refused(&["export", "--cube", "grid.nc"], "outputs.sample_interval: its jobs have several");
-    refused(&["export", "--cube", "grid.csv"], "ends in .nc or .h5");
+    refused(&["export", "--out", "grid.nc"], "outputs.sample_interval: its jobs have several");
+    refused(&["export", "--out", "grid.csv"], "ends in .nc or .h5");
 }

@@ -8,15 +8,12 @@ use billow_study::store::history_file::{self, StoredFrames};
 use resvg::usvg::roxmltree::Document;
 use serde_json::{Value, json};
 
-use crate::support::{TestFolder, histories, stderr};
+use crate::support::{TestFolder, histories, paper_design, stderr};
 
 /// A film study of a few milliseconds: a job with frames, a job without.
 fn study() -> Value {
     json!({
-        "design": {
-            "fit": "cone", "N": 6, "M": 3, "bottom_radius": "500 mm", "top_radius": "365 mm",
-            "height": "1 m", "subdivisions": 2
-        },
+        "design": paper_design(2),
         "film": { "compression": 0 },
         "gas": { "species": "nitrogen", "mass_flow_rate": "5 g/s" },
         "solver": { "model": "film", "end_time": "4 ms" },

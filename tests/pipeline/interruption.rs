@@ -52,8 +52,7 @@ pub(crate) fn signal(child: &Child, name: &str) {
 
 #[test]
 fn a_killed_run_keeps_its_finished_jobs() {
-    let whole = TestFolder::new(&long_grid());
-    whole.stdout(&["run", "grid.json", "-q"]);
+    let whole = TestFolder::finished(&long_grid());
 
     let folder = TestFolder::new(&long_grid());
     let mut killed = 0;
@@ -134,8 +133,7 @@ fn files(root: &Path) -> BTreeMap<PathBuf, (Vec<u8>, SystemTime)> {
 
 #[test]
 fn a_finished_study_runs_nothing() {
-    let folder = TestFolder::new(&small_grid());
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&small_grid());
     let before = files(&folder.results());
     let said = folder.stdout(&["run", "grid.json"]);
     assert!(said.starts_with("grid: nothing to run, all 16 jobs are finished\n"), "{said}");
@@ -149,9 +147,7 @@ fn a_second_run_of_a_running_study_is_refused() {
     let folder = TestFolder::new(&long_grid());
     let mut first = folder.billow(&["run", "grid.json", "-q"]).spawn().unwrap();
     assert!(wait_for(&folder, &mut first, 1), "the first run ended before the second");
-    let second = folder.run(&["run", "grid.json", "-q"]);
-    assert_eq!(second.status.code(), Some(2));
-    assert!(stderr(&second).contains("another billow command is running this study"));
+    folder.refuses(&["run", "grid.json", "-q"], "another billow command is running this study");
     let first = first.wait_with_output().unwrap();
     assert_eq!(first.status.code(), Some(0), "{}", stderr(&first));
     assert!(folder.rows("results/grid").iter().all(|row| row["status"] != "pending"));

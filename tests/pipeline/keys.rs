@@ -2,7 +2,9 @@
 
 use std::process::{Command, Output};
 
+use billow_study::cli::Cli;
 use billow_study::input::keys::listing::{FileKind, entries};
+use clap::CommandFactory;
 use serde_json::Value;
 
 fn billow(arguments: &[&str]) -> Output {
@@ -80,4 +82,8 @@ fn help_shows_options_of_the_command_before_global_ones_and_lists_the_exit_codes
     let help = stdout(&["--help"]);
     assert!(help.contains("Exit codes:") && help.contains("130: Ctrl-C"), "{help}");
     assert!(!help.contains("Global options"), "{help}");
+    for command in Cli::command().get_subcommands() {
+        let line = format!("\n  {} ", command.get_name());
+        assert!(help.contains(&line), "{} is in no group: {help}", command.get_name());
+    }
 }

@@ -143,8 +143,7 @@ fn a_search_encloses_the_rate_at_which_a_limit_is_missed() {
 
 #[test]
 fn other_limits_judge_the_stored_runs() {
-    let folder = TestFolder::new(&safety_study(&json!(["0.5 g/s", "2 g/s", "5 g/s"])));
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&safety_study(&json!(["0.5 g/s", "2 g/s", "5 g/s"])));
     let rows = folder.rows("results/grid");
     let set = ["--set", "limits.peak_vz=< 38 m/s"];
     let output = folder.run(&[&["table", "grid.json", "--runs", "--json"], &set[..]].concat());

@@ -18,8 +18,7 @@ fn ran(limits: &Value) -> TestFolder {
     });
     study["replicates"] = json!({"film.thickness": ["25 um", "26 um", "27 um", "28 um"]});
     study["limits"] = limits.clone();
-    let folder = TestFolder::new(&study);
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study);
     folder
 }
 
@@ -95,9 +94,7 @@ fn a_reader_sees_ranges_proportions_and_the_speed_of_each_strategy() {
     assert!(stderr(&output).contains("6 points, 24 runs"), "{}", stderr(&output));
     let all = folder.stdout(&["table", "--columns", "all"]);
     assert!(!all.contains("peak_vz_least"), "the range stands beside the median");
-    let refused = folder.run(&["table", "--columns", "job"]);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(stderr(&refused).contains("--runs"), "{}", stderr(&refused));
+    folder.refuses(&["table", "--columns", "job"], "--runs");
     // The single runs, as in a study without replicates.
     let runs = folder.stdout(&["table", "--runs"]);
     let header = runs.lines().next().unwrap();
@@ -154,8 +151,7 @@ fn limits_alone_add_what_is_safe_to_the_table() {
     study["design"]["M"] = json!(3);
     study["design"]["alpha1_over_phi"] = json!(1);
     study["limits"] = json!({"peak_vz": "< 10 m/s"});
-    let folder = TestFolder::new(&study);
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study);
     let table = folder.stdout(&["table"]);
     let header: Vec<&str> = table.lines().next().unwrap().split_whitespace().collect();
     let at = |name: &str| header.iter().position(|word| *word == name).unwrap();

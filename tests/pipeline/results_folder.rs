@@ -8,8 +8,7 @@ use serde_json::json;
 use crate::support::{TestFolder, grid, small_grid, stderr};
 
 fn finished_study() -> TestFolder {
-    let folder = TestFolder::new(&small_grid());
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&small_grid());
     folder
 }
 

@@ -97,8 +97,7 @@ fn the_next_step_of_a_failed_run_works_with_replicates() {
 
 #[test]
 fn table_selects_sorts_and_filters() {
-    let folder = TestFolder::new(&small_grid());
-    folder.run(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&small_grid());
     let csv = |more: &[&str]| folder.stdout(&[&["table", "--format", "csv"], more].concat());
     let picked =
         csv(&["--columns", "N,M,status", "--where", "N == 6 and residual_gas_mass > '0.01 g'"]);
@@ -123,8 +122,7 @@ fn table_selects_sorts_and_filters() {
 
 #[test]
 fn a_closed_output_pipe_is_no_error() {
-    let folder = TestFolder::new(&small_grid());
-    folder.run(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&small_grid());
     let mut child =
         folder.billow(&["table", "--columns", "all", "--format", "json"]).spawn().unwrap();
     let mut line = String::new();
@@ -165,8 +163,7 @@ fn a_folder_with_other_files_is_refused() {
 
 #[test]
 fn a_table_of_another_study_than_the_file_says_so() {
-    let folder = TestFolder::new(&small_grid());
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&small_grid());
     let same = folder.run(&["table", "grid.json"]);
     assert!(!stderr(&same).contains("is not the study"), "{}", stderr(&same));
     let other = folder.run(&["table", "grid.json", "--set", "film.numerical_damping=0.05"]);

@@ -11,7 +11,7 @@ use serde_json::{Value as Json, json};
 use crate::support::{TestFolder, grid, stderr};
 
 /// A piston study that searches the mass flow rate at which the speed reaches its limit.
-fn searching() -> Json {
+pub(crate) fn searching() -> Json {
     let mut study = grid(&json!({
         "N": [5, 6],
         "mass_flow_rate": {"bisect": ["1 g/s", "20 g/s"], "on": "peak_vz", "tolerance": "2 %", "spacing": "log"},
@@ -47,8 +47,7 @@ fn rows(folder: &TestFolder) -> Vec<Json> {
 
 #[test]
 fn a_search_finds_the_border_of_a_limit_and_resumes() {
-    let folder = TestFolder::new(&searching());
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&searching());
     let found = borders(&folder);
     assert_eq!(found.len(), 2, "one search for each N");
     let rows = rows(&folder);
@@ -80,8 +79,7 @@ fn a_search_finds_the_border_of_a_limit_and_resumes() {
 
 #[test]
 fn an_interrupted_search_plans_the_same_jobs() {
-    let whole = TestFolder::new(&searching());
-    whole.stdout(&["run", "grid.json", "-q"]);
+    let whole = TestFolder::finished(&searching());
     let parts = TestFolder::new(&searching());
     // First the scan alone, as the jobs of a plain grid.
     let scan = Study::from_text(&searching().to_string(), "s.json", "s", &[], PlanSize::default());
@@ -101,8 +99,7 @@ fn an_interrupted_search_plans_the_same_jobs() {
 
 #[test]
 fn replicates_repeat_every_point_and_decide_together() {
-    let folder = TestFolder::new(&replicated());
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&replicated());
     for border in borders(&folder) {
         let Outcome::Border { low, high, met_below: true } = border.outcome else {
             panic!("{border:?}")
@@ -138,84 +135,6 @@ fn single_points_have_all_replicates() {
     let again = Study::from_text(&text, "s.json", "s", &[], PlanSize::default()).unwrap();
     assert_eq!(billow_study::study::plan::next_jobs(&again, &[]), Some(plan));
     assert_eq!(again.replicates(), study.replicates());
-}
-
-#[test]
-fn wrong_searches_and_replicates_are_refused_with_their_place() {
-    let refused = |change: &dyn Fn(&mut Json), parts: &[&str]| {
-        let mut study = searching();
-        change(&mut study);
-        let folder = TestFolder::new(&study);
-        let output = folder.run(&["plan", "grid.json"]);
-        let error = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{error}");
-        for part in parts {
-            assert!(error.contains(part), "{part} is missing in: {error}");
-        }
-    };
-    let axis =
-        |study: &mut Json, key: &str, value: Json| study["grid"]["mass_flow_rate"][key] = value;
-    refused(
-        &|study| axis(study, "bisect", json!(["5 g/s", "1 g/s"])),
-        &["grid.mass_flow_rate", "below its end"],
-    );
-    refused(&|study| axis(study, "bisect", json!([0, "1 g/s"])), &["logarithmic", "above 0"]);
-    refused(&|study| axis(study, "bisect", json!(["1 g/s"])), &["list of two values"]);
-    refused(
-        &|study| axis(study, "on", json!("peak_kinetic_energy")),
-        &["has no limit", "verdict, safe, peak_vz"],
-    );
-    refused(&|study| axis(study, "on", json!("peak_v")), &["did you mean peak_vz"]);
-    refused(
-        &|study| axis(study, "tolerance", json!("2 Pa")),
-        &["rate.tolerance", "mass flow rate above 0 (kg/s, "],
-    );
-    refused(
-        &|study| axis(study, "tolerance", json!(0)),
-        &["rate.tolerance = 0", "is not positive"],
-    );
-    refused(&|study| axis(study, "steps", json!(3)), &["`steps` is not a key of a search"]);
-    refused(
-        &|study| study["grid"]["N"] = json!({"bisect": [4, 8], "on": "verdict"}),
-        &["second search"],
-    );
-    refused(&|study| study["replicates"] = json!({"seed": 3}), &["3 replicates", "4 and more"]);
-    refused(
-        &|study| study["replicates"] = json!({"N": [4, 5]}),
-        &["replicates.N", "varies already"],
-    );
-    refused(
-        &|study| study["replicates"] = json!({"thickness": 3}),
-        &["replicates.thickness", "list of values"],
-    );
-    refused(&|study| study["replicates"] = json!({"seed": 0}), &["replicates.seed", "1 to"]);
-    refused(
-        &|study| study["replicates"] = json!({"sed": 5}),
-        &["can repeat a point", "mean seed?"],
-    );
-    refused(
-        &|study| study["replicates"] = json!({"zip": [1]}),
-        &["allowed: keys of the study, as N or film.thickness\n"],
-    );
-    refused(&|study| study["replicates"] = json!(5), &["next: \"replicates\": {\"seed\": 5}"]);
-    refused(
-        &|study| {
-            study["replicates"] = json!({"seed": 5});
-            study["grid"]["filter"] = json!("seed < 3");
-        },
-        &["grid.filter", "names seed, a replicate"],
-    );
-    refused(
-        &|study| {
-            study["replicates"] = json!({"seed": 5});
-            study["grid"]["points"] = json!([{"seed": 9}]);
-        },
-        &["grid.points[0].seed", "is a replicate"],
-    );
-    refused(
-        &|study| study["limits"] = json!({"peak_vz": "40 m/s"}),
-        &["limits.peak_vz", "does not begin with <"],
-    );
 }
 
 #[test]
@@ -255,8 +174,7 @@ fn a_search_runs_along_single_points_that_do_not_give_its_key() {
         {"N": 7, "mass_flow_rate": "3 g/s"},
     ]);
     study["grid"]["filter"] = json!("N < 7");
-    let folder = TestFolder::new(&study);
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study);
     let found = borders(&folder);
     let values: Vec<&Value> = found.iter().map(|border| &border.parameters[0].1).collect();
     assert_eq!(values, [5, 6, 7].map(Value::Integer).iter().collect::<Vec<_>>());
@@ -272,15 +190,13 @@ fn a_search_runs_along_single_points_that_do_not_give_its_key() {
 
 #[test]
 fn a_job_that_two_points_share_counts_once() {
-    let plain = TestFolder::new(&searching());
-    plain.stdout(&["run", "grid.json", "-q"]);
+    let plain = TestFolder::finished(&searching());
     let expected = borders(&plain);
     // A value that the bisection meets, and a single point that is one of the product.
     let Outcome::Border { low, .. } = expected[0].outcome else { panic!("{expected:?}") };
     let mut study = searching();
     study["grid"]["points"] = json!([{"N": 5, "mass_flow_rate": low}, {"N": 5}]);
-    let folder = TestFolder::new(&study);
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study);
     assert_eq!(borders(&folder), expected);
     let mut ids = jobs(&folder);
     ids.sort();

@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 
 use crate::interruption::signal;
-use crate::support::stderr;
+use crate::support::{paper_design, stderr};
 
 fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes")
@@ -66,10 +66,7 @@ pub(crate) fn cube(mesh: &Value, gas: &Value) -> Value {
 
 pub(crate) fn capsule() -> Value {
     json!({
-        "design": {
-            "N": 6, "M": 3, "bottom_radius": "500 mm", "top_radius": "365 mm", "height": 1,
-            "subdivisions": 2,
-        },
+        "design": paper_design(2),
         "gas": {"windows": [{"from": "2 ms", "to": "30 ms", "mass_flow_rate": "5 g/s"}], "leak_area": "1 cm2"},
         "release_time": "5 ms",
         "solver": {"end_time": "40 ms"},
@@ -172,7 +169,7 @@ fn same_bits(scene: &Value, pauses: &[&str]) {
         let summary = done(folder.path(), &arguments, simd);
         (summary, fs::read(folder.path().join(out)).unwrap())
     };
-    let whole = run("whole.h5", &["--threads", "2"], "");
+    let whole = run("whole.h5", &[], "");
     for set in InstructionSet::ALL.into_iter().filter(|set| set.available()) {
         let (summary, file) = run("set.h5", &[], set.name());
         assert_eq!(summary, whole.0, "{}", set.name());

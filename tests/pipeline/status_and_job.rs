@@ -55,9 +55,8 @@ fn status_works_under_the_lock_of_another_process() {
     assert!(
         folder.stdout(&["status"]).starts_with("grid: running: another process holds its lock")
     );
-    let refused = folder.run(&["run", "grid.json", "--again", &ids(&folder, "done")[0], "-q"]);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(stderr(&refused).contains("another billow command is running"), "{}", stderr(&refused));
+    let again = ["run", "grid.json", "--again", &ids(&folder, "done")[0], "-q"];
+    folder.refuses(&again, "another billow command is running");
     drop(lock);
     // A running `status` does not prevent a run.
     let mut observer = folder.billow(&["status"]).spawn().unwrap();
@@ -104,8 +103,7 @@ fn job_explains_a_verdict_with_its_numbers() {
     // A stall: the gas is not enough for the volume.
     let mut study = grid(&json!({"N": [6], "M": [3], "alpha1_over_phi": [1]}));
     study["gas"] = json!({"mass_flow_rate": "0.01 g/s"});
-    let folder = TestFolder::new(&study);
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study);
     let id = ids(&folder, "done").remove(0);
     let row = folder.rows("results/grid").remove(0);
     let said = folder.stdout(&["job", &id]);
@@ -122,8 +120,7 @@ fn job_judges_a_job_by_the_limits_as_the_table_does() {
     let mut study = grid(&json!({"N": [6], "M": [3], "alpha1_over_phi": [1],
         "mass_flow_rate": ["1 g/s", "2 g/s"]}));
     study["limits"] = json!({"peak_vz": "< 24 m/s", "verdict": "deployed"});
-    let folder = TestFolder::new(&study);
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study);
     let rows = folder.rows("results/grid");
     let safe: Vec<bool> = rows.iter().map(|row| row["safe"].as_bool().unwrap()).collect();
     assert_eq!(safe, [true, false], "{rows:?}");
@@ -180,9 +177,7 @@ fn job_ids_may_be_unique_prefixes() {
         (["job", ""], "no job has this id"),
         (["job", &format!("{}0000000", &all[0][..8])], &all[0][..8]),
     ] {
-        let output = folder.run(&arguments);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-        assert!(stderr(&output).contains(expected), "{arguments:?}: {}", stderr(&output));
+        folder.refuses(&arguments, expected);
     }
     let known: Vec<String> = folder
         .rows("results/grid")
@@ -270,8 +265,7 @@ fn job_reports_a_run_that_ends_in_motion() {
     let axes = json!({"N": [6], "M": [3], "alpha1_over_phi": [1], "mass_flow_rate": ["2 g/s"]});
     let mut study = grid(&axes);
     study["solver"]["end_time"] = json!("20 ms");
-    let folder = TestFolder::new(&study);
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study);
     let said = folder.stdout(&["job", &ids(&folder, "done")[0]]);
     for words in
         ["done, stalled", "motion    in the last tenth", "next      a longer solver.end_time"]

@@ -20,6 +20,13 @@ impl TestFolder {
         Self { folder }
     }
 
+    /// The same, and the study has run.
+    pub fn finished(study: &Value) -> Self {
+        let folder = Self::new(study);
+        folder.stdout(&["run", "grid.json", "-q"]);
+        folder
+    }
+
     /// Path of the folder.
     pub fn path(&self) -> &Path {
         self.folder.path()
@@ -48,6 +55,15 @@ impl TestFolder {
         let output = self.run(arguments);
         assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
         String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// Runs the command, which must be refused: exit code 2, this text on stderr, nothing on stdout.
+    pub fn refuses(&self, arguments: &[&str], text: &str) {
+        let output = self.run(arguments);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        assert!(said.contains(text), "{arguments:?}: {text:?} is not in {said}");
+        assert!(output.stdout.is_empty(), "{arguments:?}");
     }
 
     /// The points of the table: one row for all runs of a point.
@@ -86,6 +102,14 @@ pub fn grid(axes: &Value) -> Value {
     })
 }
 
+/// The fold of the paper's capsule on a film of this mesh.
+pub fn paper_design(subdivisions: u32) -> Value {
+    serde_json::json!({
+        "N": 6, "M": 3, "bottom_radius": "500 mm", "top_radius": "365 mm", "height": "1 m",
+        "subdivisions": subdivisions,
+    })
+}
+
 /// Rows without cost and provenance.
 pub fn without_costs(rows: Vec<Value>) -> Vec<Value> {
     let strip = |mut row: Value| {
@@ -112,9 +136,7 @@ pub fn histories(results: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 
 /// The finished small grid.
 pub fn ran() -> TestFolder {
-    let folder = TestFolder::new(&small_grid());
-    folder.stdout(&["run", "grid.json", "-q"]);
-    folder
+    TestFolder::finished(&small_grid())
 }
 
 /// The small grid with a step limit at which every job fails.
@@ -122,7 +144,7 @@ pub fn failed() -> TestFolder {
     let mut study = small_grid();
     study["solver"]["step_limit"] = serde_json::json!(3);
     let folder = TestFolder::new(&study);
-    folder.run(&["run", "grid.json", "-q"]);
+    assert_eq!(folder.run(&["run", "grid.json", "-q"]).status.code(), Some(1));
     folder
 }
 

@@ -7,7 +7,9 @@ use std::process::{Command, Output};
 
 use serde_json::{Value, json};
 
-use crate::support::{TestFolder, file_of, histories, ids, ran, small_grid, stderr, without_costs};
+use crate::support::{
+    TestFolder, file_of, histories, ids, paper_design, ran, small_grid, stderr, without_costs,
+};
 
 /// Source of the library that disturbs system calls.
 const SHIM: &str = include_str!("../torture/shim.c");
@@ -140,10 +142,7 @@ fn a_refused_scene_or_checkpoint_has_a_next_step() {
     let write = |name: &str, text: &[u8]| fs::write(folder.path().join(name), text).unwrap();
     let mut scene = json!({
         "format": "billow-scene", "version": 1,
-        "design": {
-            "fit": "cone", "N": 6, "M": 3, "bottom_radius": 0.5, "top_radius": 0.365, "height": 1,
-            "subdivisions": 2
-        },
+        "design": paper_design(2),
         "gas": {"mass_flow_rate": "1 g/s"}, "solver": {"end_time": "1 ms"}
     });
     write("scene.json", scene.to_string().as_bytes());

@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::{Value, json};
 
-use crate::support::{TestFolder, grid, small_grid, stderr};
+use crate::support::{TestFolder, grid, paper_design, small_grid, stderr};
 
 /// Two flow rates in g/s, one temperature in °C, a loss factor in %.
 fn study() -> Value {
@@ -60,8 +60,7 @@ fn tables_show_the_units_of_the_study() {
 fn a_study_says_in_which_units_it_is_shown() {
     let mut study = study();
     study["units"] = json!({"t_90_z_rim": "ms", "mass_flow_rate": "mg/s"});
-    let folder = TestFolder::new(&study);
-    folder.run(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study);
     let table = ["table", "-q", "--columns", "mass_flow_rate,t_90_z_rim", "results/grid"];
     assert_eq!(words(&folder.stdout(&table))[1], ["(mg/s)", "(ms)"]);
     // Other units are the same study.
@@ -130,10 +129,7 @@ fn times_that_do_not_fit_the_run_are_warnings() {
 #[test]
 fn a_scene_warns_as_well() {
     let scene = json!({
-        "design": {
-            "fit": "cone", "N": 6, "M": 3, "bottom_radius": "500 mm", "top_radius": "365 mm",
-            "height": "1 m", "subdivisions": 1,
-        },
+        "design": paper_design(1),
         "film": {"density": 1.4},
         "gas": {"windows": [{"from": 0, "to": 1, "mass_flow_rate": "5 g/s"}]},
         "solver": {"end_time": "1 us"},
@@ -182,8 +178,7 @@ fn shipped_studies_and_scenes_give_no_warning() {
 
 #[test]
 fn keys_of_the_study_are_columns() {
-    let folder = TestFolder::new(&study());
-    folder.run(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study());
     let condition = "film.loss_factor > 1 % and design.N == 5 and gas.mass_flow_rate > '2 g/s'";
     let columns = "film.loss_factor,design.N,end_time,gas.mass_flow_rate,solver.model";
     let asked = ["table", "-q", "--where", condition, "--columns", columns];
@@ -207,8 +202,7 @@ fn keys_of_the_study_are_columns() {
 
 #[test]
 fn show_has_the_names_and_units_of_the_study() {
-    let folder = TestFolder::new(&study());
-    folder.run(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study());
     let job = folder.rows("results/grid")[1]["job"].as_str().unwrap().to_owned();
     let shown = folder.stdout(&["job", &job, "--all"]);
     assert!(shown.contains("scene       film.numerical_damping "), "{shown}");

@@ -4,15 +4,12 @@ use std::fs;
 
 use serde_json::{Value, json};
 
-use crate::support::{TestFolder, json_of, stderr, without_costs};
+use crate::support::{TestFolder, json_of, paper_design, stderr, without_costs};
 
 /// The paper's capsule on the coarsest film.
 fn study(solver: &Value, changes: &Value) -> Value {
     let mut study = json!({
-        "design": {
-            "N": 6, "M": 3, "bottom_radius": "500 mm", "top_radius": "365 mm", "height": "1 m",
-            "subdivisions": 2
-        },
+        "design": paper_design(2),
         "solver": solver,
         "outputs": {"frames": 0},
         "grid": {"seed": [0]}
@@ -34,8 +31,8 @@ fn compliant_film_is_compared_with_its_own_static_equilibrium() {
         "film": {"youngs_modulus": "20 MPa", "thickness": "50 um", "density": "1200 kg/m3"},
         "gas": {"mass_flow_rate": "10 g/s"}
     });
-    let folder = TestFolder::new(&study(&json!({"model": "film", "end_time": "0.5 s"}), &soft));
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder =
+        TestFolder::finished(&study(&json!({"model": "film", "end_time": "0.5 s"}), &soft));
     let row = &folder.rows("results/grid")[0];
     assert!(row["verdict"].is_string(), "{row}");
     let pressure = number(row, "reference_overpressure");
@@ -96,8 +93,7 @@ fn a_capsule_without_gas_is_stalled() {
     let empty = json!({"gas": {"mass_flow_rate": 0, "residual_gas_mass": 0}});
     for model in ["piston", "film"] {
         let solver = json!({"model": model, "end_time": "5 ms"});
-        let folder = TestFolder::new(&study(&solver, &empty));
-        folder.stdout(&["run", "grid.json", "-q"]);
+        let folder = TestFolder::finished(&study(&solver, &empty));
         let row = &folder.rows("results/grid")[0];
         assert_eq!((&row["status"], &row["verdict"]), (&json!("done"), &json!("stalled")), "{row}");
         assert!(number(row, "volume_ratio") < 0.1, "{row}");

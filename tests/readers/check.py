@@ -2,7 +2,7 @@
 
     tests/readers/check.sh RESULTS [CUBE]
 
-RESULTS is the results folder of a finished study, CUBE what `billow export --cube` wrote of it. Every history file is opened with h5py and with xarray
+RESULTS is the results folder of a finished study, CUBE what `billow export --out` wrote of it. Every history file is opened with h5py and with xarray
 (h5netcdf), the cube with xarray, its frames with the reader of VTK and ParaView, summary.parquet with pandas and with pyarrow.
 All of them are compared. The film of no frame intersects itself, as CGAL finds. The first difference ends the program with exit code 1.
 """

@@ -2,6 +2,7 @@
 
 #![allow(clippy::disallowed_methods, reason = "reads the files of the repository")]
 
+mod commands_page;
 mod job_ids;
 mod layers;
 mod reference;

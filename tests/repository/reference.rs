@@ -5,10 +5,10 @@
 
 use std::fs;
 
-use billow_study::cli::reference::{commands, exit_codes};
 use billow_study::input::keys::listing::reference_page as keys;
 use billow_study::store::table::reference::page as columns;
 
+use crate::commands_page::{commands, exit_codes};
 use crate::sources::root;
 
 /// Whether the tests write their files again: `BILLOW_UPDATE_REFERENCE=1`.

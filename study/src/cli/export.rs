@@ -22,7 +22,7 @@ pub struct Args {
     /// Write the cube of the study: every history over the axes of the grid and time, and every column of the
     /// table over the axes, as one file that xarray opens (netCDF-4 in HDF5). FILE ends in .nc or .h5.
     #[arg(long, value_name = "FILE", required = true)]
-    pub cube: PathBuf,
+    pub out: PathBuf,
     /// Only these columns of the histories, comma-separated [default: all].
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',')]
     pub columns: Vec<String>,
@@ -37,9 +37,9 @@ pub struct Args {
 /// # Errors
 /// As [`cube::write`]; a file name with another extension.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    check_extension(&args.cube)?;
+    check_extension(&args.out)?;
     let stored = stored::read(&folder(&args.study, &[])?)?;
-    let written = cube::write(&stored, &args.columns, &args.cube)?;
+    let written = cube::write(&stored, &args.columns, &args.out)?;
     if let Some(reason) = written.no_product.filter(|_| !args.quiet.quiet) {
         eprintln!(
             "billow: the study {}, so its points are no grid: the cube has the dimension `point`",
@@ -51,7 +51,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         dimensions.iter().map(|(name, length)| format!("{name} {length}")).collect();
     let number = |number: usize| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));
     let row = vec![
-        Value::Text(args.cube.display().to_string()),
+        Value::Text(args.out.display().to_string()),
         Value::Text(dimensions.join(", ")),
         number(variables),
         number(jobs),
@@ -66,5 +66,5 @@ fn check_extension(path: &Path) -> Result<()> {
     }
     let value = path.display().to_string();
     let allowed = "a file name that ends in .nc or .h5";
-    Err(Error::invalid_option("--cube", &value, "not a format of cubes", allowed, ""))
+    Err(Error::invalid_option("--out", &value, "not a format of cubes", allowed, ""))
 }

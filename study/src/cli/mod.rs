@@ -43,7 +43,6 @@ pub mod print;
 mod queue;
 mod range;
 mod rank;
-pub mod reference;
 mod run;
 mod solve;
 mod status;
@@ -63,6 +62,8 @@ pub use options::Format;
     version,
     propagate_version = true,
     max_term_width = 100,
+    help_template = "{about-with-newline}\n{usage-heading} {usage}\n\n{before-help}Options:\n{options}{after-help}",
+    before_help = commands_help(),
     after_help = exit_codes_help()
 )]
 pub struct Cli {
@@ -166,6 +167,33 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
         Command::Keys(args) => keys::run(args, out),
         Command::Completions(args) => completions::run(args, out),
     }
+}
+
+/// The commands in the groups in which a user thinks of them.
+const GROUPS: [(&str, &[&str]); 4] = [
+    ("Design", &["fold", "solve", "keys"]),
+    ("Study", &["plan", "advise", "run", "submit", "merge", "status"]),
+    (
+        "Answers",
+        &["table", "compare", "rank", "borders", "chart", "pareto", "frames", "job", "export"],
+    ),
+    ("Care", &["doctor", "completions"]),
+];
+
+/// The commands in `billow --help`, in [`GROUPS`].
+fn commands_help() -> String {
+    let program = Command::augment_subcommands(clap::Command::new("billow"));
+    let mut text = String::new();
+    for (group, names) in GROUPS {
+        let _ = writeln!(text, "{group}:");
+        for name in names {
+            if let Some(about) = program.find_subcommand(name).and_then(clap::Command::get_about) {
+                let _ = writeln!(text, "  {name:<12} {about}");
+            }
+        }
+        text.push('\n');
+    }
+    text
 }
 
 /// The exit codes below `billow --help`.

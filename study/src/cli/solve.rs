@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use billow_solver::geometry::mesh_io::obj;
 
-use super::options::{HEADING, OutputOptions, QuietOption, SetOption};
+use super::options::{OutputOptions, QuietOption, SetOption};
 use super::print::print_rows;
 use super::{Format, instruction_set, output_error};
 use crate::job::{JobId, Status};
@@ -42,9 +42,6 @@ pub struct Args {
     /// Continue from this checkpoint of the same scene.
     #[arg(long, value_name = "FILE")]
     pub resume: Option<PathBuf>,
-    /// Accepted for scripts, without effect: one scene runs on one thread.
-    #[arg(long, value_name = "N", help_heading = HEADING, value_parser = clap::value_parser!(u64).range(1..))]
-    pub threads: Option<u64>,
     #[command(flatten)]
     set: SetOption,
     #[command(flatten)]

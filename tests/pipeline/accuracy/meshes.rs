@@ -10,8 +10,7 @@ use crate::support::{TestFolder, json_of, stderr};
 /// A study on two meshes has one row, with values between which and the finest run the table of mesh errors stands.
 #[test]
 fn two_meshes_give_one_row_with_extrapolated_values_and_the_runs_are_kept() {
-    let folder = TestFolder::new(&film(&json!({"solver": {"meshes": [4, 6]}})));
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&film(&json!({"solver": {"meshes": [4, 6]}})));
     let (points, runs) = (folder.points("results/grid"), folder.rows("results/grid"));
     assert_eq!((points.len(), runs.len()), (1, 2));
     let of_mesh = |n: i64| runs.iter().find(|run| run["subdivisions"] == n).unwrap();
@@ -120,8 +119,7 @@ fn an_accuracy_chooses_the_cheapest_meshes_that_keep_it() {
 fn the_choice_of_an_accuracy_stands_in_the_stored_study() {
     let mut study = film(&json!({"accuracy": {"peak_kinetic_energy": 0.3}}));
     study["solver"]["end_time"] = json!("10 ms");
-    let folder = TestFolder::new(&study);
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study);
     let text = fs::read_to_string(folder.results().join("study.json")).unwrap();
     let stored: Value = serde_json::from_str(&text).unwrap();
     let meshes = stored["accuracy"]["meshes"].as_array().unwrap();

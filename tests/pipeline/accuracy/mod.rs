@@ -38,8 +38,7 @@ fn film(more: &Value) -> Value {
 fn a_row_outside_the_table_says_why_it_has_no_error() {
     let mut study = film(&json!({"contact": {"friction": 0.2}, "design": {"subdivisions": 2}}));
     study["solver"]["end_time"] = json!("20 ms");
-    let folder = TestFolder::new(&study);
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study);
     let row = &folder.rows("results/grid")[0];
     assert_eq!(row["no_error_reason"], "contact.friction 0.2: the runs of the table have 0");
     assert_eq!(row["peak_vz_change_to_n24"], Value::Null);
@@ -51,8 +50,7 @@ fn rows_of_the_piston_have_no_mesh_error_and_say_where_theirs_is() {
     let mut study = film(&json!({"grid": {"mass_flow_rate": ["5 g/s", "10 g/s"]}}));
     study["solver"]["model"] = json!("piston");
     study["gas"] = json!({});
-    let folder = TestFolder::new(&study);
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study);
     for row in folder.rows("results/grid") {
         assert_eq!(row["t_90_z_rim_error"], Value::Null);
         let reason = row["no_error_reason"].as_str().unwrap();

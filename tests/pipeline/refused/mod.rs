@@ -6,12 +6,14 @@ use std::fs;
 
 use serde_json::{Value, json};
 
+use crate::search::searching;
 use crate::solve::CUBE;
 use crate::support::{TestFolder, grid, stderr};
 
 /// The cases, one a line: what is done, and parts of the message after `=>`, separated by `;;`. `\n` is the end of a line,
 /// `␣` a blank within a word. What is done is a command line (`{job}` is the id of a finished job), or a change of a valid
-/// file: `study KEY = JSON` for `plan`; `scene` (a cube), `sheets` (two sheets that touch), `capsule` for `solve`.
+/// file: `study KEY = JSON`, `search`, `seeds` (a search with replicates) for `plan`; `scene` (a cube), `sheets` (two sheets
+/// that touch), `capsule` for `solve`.
 const CASES: &str = include_str!("cases.txt");
 
 /// Files with a mistake: name and content.
@@ -53,8 +55,7 @@ fn folder() -> TestFolder {
     });
     let mut study = grid(&axes);
     study["strategies"] = json!({"late": {"release_time": "10 ms"}});
-    let folder = TestFolder::new(&study);
-    folder.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::finished(&study);
     for (name, content) in FILES {
         fs::write(folder.path().join(name), content).unwrap();
     }
@@ -117,6 +118,12 @@ fn valid(kind: &str) -> Option<(&'static str, Value)> {
             Some(("solve", scene))
         }
         "capsule" => Some(("solve", crate::solve::capsule())),
+        "search" => Some(("plan", searching())),
+        "seeds" => {
+            let mut study = searching();
+            study["replicates"] = json!({"seed": 5});
+            Some(("plan", study))
+        }
         _ => None,
     }
 }
@@ -166,7 +173,7 @@ fn every_mistake_gives_a_message_with_place_and_next_step() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
     assert_eq!(names(&folder), before, "no file is written");
     // The files that the cases change are valid.
-    for kind in ["study", "scene", "capsule"] {
+    for kind in ["study", "search", "seeds", "scene", "capsule"] {
         let (command, json) = valid(kind).unwrap();
         fs::write(folder.path().join("changed.json"), json.to_string()).unwrap();
         folder.stdout(&[command, "changed.json", "-q"]);

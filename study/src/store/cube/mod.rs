@@ -139,7 +139,7 @@ fn check_size(layout: &Layout, series: &Series) -> Result<()> {
     let gibibytes = |values: u128| (values * 8).div_ceil(1 << 30);
     let [points, times, columns] = lengths;
     Err(Error::invalid_option(
-        "--cube",
+        "--out",
         "",
         format!(
             "would hold {values} values over time ({} GiB): {points} points, {times} times, {columns} columns",

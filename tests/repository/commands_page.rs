@@ -2,11 +2,10 @@
 
 use std::fmt::Write;
 
+use billow_study::cli::Cli;
+use billow_study::cli::options::HEADING;
+use billow_study::platform::exit_code::EXIT_CODES;
 use clap::{Arg, Command, CommandFactory};
-
-use super::Cli;
-use super::options::HEADING;
-use crate::platform::exit_code::EXIT_CODES;
 
 /// First lines of a generated page.
 const GENERATED: &str = "Generated from the program. To update: `BILLOW_UPDATE_REFERENCE=1 cargo test --release -p \
