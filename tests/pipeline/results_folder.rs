@@ -36,7 +36,7 @@ fn histories_agree_with_the_table() {
 }
 
 #[test]
-fn a_lost_or_foreign_table_is_read_from_the_journal_and_restored() {
+fn a_lost_or_foreign_table_changes_no_answer_and_is_restored() {
     let folder = finished_study();
     let path = folder.results().join("summary.parquet");
     let table = fs::read(&path).unwrap();
@@ -44,8 +44,6 @@ fn a_lost_or_foreign_table_is_read_from_the_journal_and_restored() {
     fs::write(&path, b"a foreign file").unwrap();
     let output = folder.run(&["table"]);
     assert_eq!(output.status.code(), Some(0));
-    assert!(stderr(&output).contains("not a Parquet file"), "{}", stderr(&output));
-    assert!(stderr(&output).contains("the journal is read instead"), "{}", stderr(&output));
     assert_eq!(output.stdout, rows);
     for damage in [false, true] {
         if damage {

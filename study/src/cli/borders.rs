@@ -2,17 +2,17 @@
 
 use std::io::Write;
 
-use super::opened::open_stored;
+use super::Format;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::print::{Heading, count, print_quantities};
-use super::target::{StudyArgs, filtered};
-use super::{Format, study_keys};
+use super::results::{self, StudyArgs};
 use crate::analysis::answer::{Found, Searches};
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::row::{CellType, ColumnId};
 use crate::platform::error::{Error, Result};
+use crate::store::table::select::filtered;
 use crate::store::table::{Column, Table};
 use crate::study::Outcome;
 
@@ -39,15 +39,15 @@ pub struct Args {
 /// # Errors
 /// Results that cannot be read; a study without a search; an invalid condition.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let (stored, table, units) = open_stored(&args.study, &args.set.set, &args.units, None)?;
+    let results::Opened { stored, table } = results::open(&args.study, &args.set.set, &args.units)?;
+    let units = &stored.units;
     let Some(searches) = Searches::of(&stored, &table) else {
         let name = stored.study.name.as_str();
         let allowed = "an axis of the grid as {\"bisect\": [low, high], \"on\": \"verdict\", \"safe\" or a limit}";
         return Err(Error::invalid_option("study", name, "searches no border", allowed, ""));
     };
     let mut borders = borders(&searches, &table);
-    let names = study_keys::names_in(args.condition.as_deref());
-    study_keys::add(&stored.study, &mut borders, &units, &names);
+    results::add_keys(&stored.study, &mut borders, units, &[], args.condition.as_deref());
     let rows = filtered(&borders, args.condition.as_deref())?;
     let format = args.output.format();
     let columns: Vec<&Column> =

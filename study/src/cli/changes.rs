@@ -3,29 +3,21 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use crate::input::value::Value;
-use crate::job::row::ColumnId;
 use crate::platform::error::Result;
 use crate::platform::provenance::PHYSICS_VERSION;
 use crate::scene::summary;
 use crate::store::results::Results;
-use crate::store::table::Table;
+use crate::store::stored::Stored;
 use crate::study::{JOB_LIMITS, LIMITS, Study, UNITS};
 
-/// The given study file, with its overrides `set`, where it differs from `stored`, the study of the results, in its
-/// limits alone: limits judge stored rows and change no job. Says on stderr in which keys the given study differs.
+/// The study of a given file where it differs from that of the results in its limits alone: limits judge stored rows and
+/// change no job. Says on stderr in which keys it differs.
 ///
 /// # Errors
-/// An invalid study file; a study.json that cannot be read.
-pub fn other_limits(
-    results: &Results<'_>,
-    stored: &Study,
-    file: Option<&Path>,
-    set: &[String],
-) -> Result<Option<Study>> {
-    let Some(path) = file.filter(|path| path.is_file()) else { return Ok(None) };
-    let study = Study::load(path, set)?;
-    if results.holds(&study.name, &study.resolved())? {
+/// A study.json that cannot be read.
+pub fn other_limits(of: &Stored<'_>, study: Study, path: &Path) -> Result<Option<Study>> {
+    let stored = &of.study;
+    if of.results.holds(&study.name, &study.resolved())? {
         return Ok(None);
     }
     if study.result_limits() != stored.result_limits() && jobs_of(stored) == jobs_of(&study) {
@@ -111,22 +103,6 @@ pub fn note_before_run(results: &Results<'_>, study: &Study) -> Result<()> {
         between(&stored, study).join(", ")
     );
     Ok(())
-}
-
-/// Says on stderr how many rows of a table another version of the physics computed.
-pub fn note_other_physics(table: &Table) {
-    let mut versions: BTreeMap<i64, usize> = BTreeMap::new();
-    let all: Vec<usize> = (0..table.rows()).collect();
-    for row in table.one_row_per_job(&all) {
-        if let Some(Value::Integer(version)) = table.value(ColumnId::PhysicsVersion, row)
-            && *version != i64::from(PHYSICS_VERSION)
-        {
-            *versions.entry(*version).or_default() += 1;
-        }
-    }
-    if let Some(note) = other_physics(&versions) {
-        eprintln!("note: {note}");
-    }
 }
 
 /// What to know about finished jobs of other versions of the physics, by version; `None` without any.

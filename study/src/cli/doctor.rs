@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use super::options::OutputOptions;
 use super::print::{count, print_rows};
-use super::target::{StudyArgs, folder};
+use super::results::{StudyArgs, folder};
 use super::{Format, output_error};
 use crate::input::value::Value;
 use crate::platform::error::{Error, Result};
@@ -32,7 +32,7 @@ pub struct Args {
 /// # Errors
 /// [`Error::JobsFailed`] (exit code 1) when something is broken.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let root = folder(&args.study, &[])?;
+    let root = folder(&args.study)?;
     let names = Disk.list(&root).map_err(|error| disk_error(&root, &error))?;
     let is_ours = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();

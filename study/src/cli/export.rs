@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::options::{OutputOptions, QuietOption};
 use super::print::print_rows;
-use super::stored;
-use super::target::{StudyArgs, folder};
+use super::results::{self, StudyArgs};
 use crate::input::value::Value;
 use crate::platform::error::{Error, Result};
 use crate::store::cube::{self, Written};
@@ -38,7 +37,7 @@ pub struct Args {
 /// As [`cube::write`]; a file name with another extension.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     check_extension(&args.out)?;
-    let stored = stored::read(&folder(&args.study, &[])?)?;
+    let stored = results::read(&results::folder(&args.study)?)?;
     let written = cube::write(&stored, &args.columns, &args.out)?;
     if let Some(reason) = written.no_product.filter(|_| !args.quiet.quiet) {
         eprintln!(

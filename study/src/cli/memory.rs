@@ -48,48 +48,50 @@ impl Memory {
 
     /// Whether a job of this scene fits, if it runs alone.
     pub fn fits(&self, scene: &Scene) -> bool {
-        self.has_room_for(memory::estimate(scene).total)
+        memory::estimate(scene).total <= self.usable()
     }
 
-    /// Whether a job that needs this memory (bytes) fits, if it runs alone.
-    pub fn has_room_for(&self, bytes: u64) -> bool {
-        bytes <= self.usable()
-    }
-
-    /// A note on the jobs that do not fit; `None` without one.
+    /// A note on the jobs that do not fit, or are above the limit of the study; `None` without one.
     pub fn note(&self, study: &Study) -> Option<String> {
-        self.machine_note(study).or_else(|| limited_note(study))
-    }
-
-    fn machine_note(&self, study: &Study) -> Option<String> {
-        let limit = self.limit?;
-        let large: Vec<&StudyPoint> =
-            feasible(study).filter(|point| !self.fits(&point.scene)).collect();
-        let needs = large.iter().map(|point| memory::estimate(&point.scene).total).max()?;
-        let label = |point: &StudyPoint| study.label(&point.parameters, study.display_units());
-        let mut names: Vec<String> =
-            large.iter().take(MAX_NAMES).map(|point| label(point)).collect();
-        if large.len() > MAX_NAMES {
-            names.push(format!("{} more", large.len() - MAX_NAMES));
+        let (usable, of_study) = (self.usable(), study.job_limits().memory);
+        let allowed = usable.min(of_study.unwrap_or(u64::MAX));
+        let (mut names, mut number, mut needed) = (Vec::new(), 0, 0);
+        for point in feasible(study) {
+            let total = memory::estimate(&point.scene).total;
+            if total > allowed {
+                number += 1;
+                needed = total.max(needed);
+                if number <= MAX_NAMES {
+                    names.push(study.label(&point.parameters, study.display_units()));
+                }
+            }
         }
         names.retain(|name| !name.is_empty());
+        if number > MAX_NAMES {
+            names.push(format!("{} more", number - MAX_NAMES));
+        }
         let names =
             if names.is_empty() { String::new() } else { format!(" ({})", names.join("; ")) };
-        Some(format!(
-            "note: {} of {}{names} will end as out_of_memory: up to {} needed, {} usable of {limit}\n  \
-             next: a coarser mesh (design.subdivisions 5 to 16 is enough for a study), or a larger limit",
-            large.len(),
-            count(feasible(study).count(), "point"),
-            size(needs),
-            size(self.usable()),
-        ))
+        let limit = match (of_study, self.limit) {
+            (Some(limit), _) if limit <= usable => format!("job_limits.memory is {}", size(limit)),
+            (_, Some(limit)) => format!("{} usable of {limit}", size(usable)),
+            _ => return None,
+        };
+        let points = count(feasible(study).count(), "point");
+        (number > 0).then(|| {
+            format!(
+                "note: {number} of {points}{names} will end as out_of_memory: up to {} needed, {limit}\n  next: a coarser \
+                 mesh (design.subdivisions 5 to 16 is enough for a study), or a larger limit",
+                size(needed)
+            )
+        })
     }
 
     /// What the largest job that fits needs, as text; `None` without a job that needs more than the program
     /// itself.
     pub fn forecast(&self, study: &Study) -> Option<String> {
-        let fitting = feasible(study).filter(|point| self.fits(&point.scene));
-        let largest = fitting.map(|point| memory::estimate(&point.scene).total).max()?;
+        let all = feasible(study).map(|point| memory::estimate(&point.scene).total);
+        let largest = all.filter(|needed| *needed <= self.usable()).max()?;
         let limit = self.limit.filter(|_| largest >= MIN_SHOWN)?;
         let together = usize::try_from(self.usable() / largest).unwrap_or(usize::MAX).max(1);
         let usable = size(self.usable());
@@ -104,21 +106,6 @@ impl Memory {
             format!("memory: up to {} a job ({usable} usable of {limit})", size(largest))
         })
     }
-}
-
-/// A note on the jobs above the limit of the study; `None` without one.
-fn limited_note(study: &Study) -> Option<String> {
-    let limit = study.job_limits().memory?;
-    let needs = feasible(study).map(|point| memory::estimate(&point.scene).total);
-    let above: Vec<u64> = needs.filter(|needed| *needed > limit).collect();
-    let largest = above.iter().max()?;
-    Some(format!(
-        "note: {} of {} will end as out_of_memory: job_limits.memory is {}, up to {} needed",
-        above.len(),
-        count(feasible(study).count(), "point"),
-        size(limit),
-        size(*largest),
-    ))
 }
 
 /// Memory of a job below which `plan` says nothing, bytes. Chosen: every machine has it.

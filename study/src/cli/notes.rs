@@ -20,23 +20,17 @@ pub fn print_warnings(study: &Study) {
     }
 }
 
-/// Prints the notes.
+/// Prints the notes on the file and on the points of the study.
 pub fn print(study: &Study) {
-    print_of_file(study);
+    for note in study.notes() {
+        eprintln!("note: {note}");
+    }
     for line in of_points(study) {
         eprintln!("{line}");
     }
 }
 
-/// Prints the notes on the file of the study.
-pub fn print_of_file(study: &Study) {
-    for note in study.notes() {
-        eprintln!("note: {note}");
-    }
-}
-
-/// The notes on the points of the study: equal for equal resolved studies.
-pub fn of_points(study: &Study) -> Vec<String> {
+fn of_points(study: &Study) -> Vec<String> {
     let has = |model| study.points().iter().any(|point| point.scene.solver.model == model);
     let mut lines: Vec<String> = Vec::new();
     if let Some(meshes) = study.chosen_meshes() {
@@ -69,31 +63,24 @@ pub fn of_points(study: &Study) -> Vec<String> {
     lines.extend(
         MODELS.iter().filter(|model| has(model.kind)).filter_map(|model| ignored(study, model)),
     );
-    if has(ModelKind::Piston) {
-        lines.push(
-            "model piston: it gives times and upper bounds of speeds, not whether a capsule deploys \
-             (the piston cannot lock); README, Models"
-                .to_owned(),
-        );
-    }
-    if has(ModelKind::Storeys) {
-        lines.push(
-            "model storeys: it gives times and speeds, not whether a capsule deploys (it cannot lock); \
-             README, Models"
-                .to_owned(),
-        );
-    }
-    if has(ModelKind::Film) {
-        let stiff = |point: &crate::study::StudyPoint| {
-            point.scene.solver.model == ModelKind::Film && point.scene.film.compression > 0.0
-        };
-        if study.points().iter().any(stiff) {
-            lines.push(
-                "note: film.compression above 0 replaces bending stiffness and its effect depends on \
-                 the mesh; compare verdicts at design.subdivisions 5, 8 and 12 and several seeds"
-                    .to_owned(),
-            );
+    for (model, gives) in [
+        (ModelKind::Piston, "model piston: it gives times and upper bounds of speeds"),
+        (ModelKind::Storeys, "model storeys: it gives times and speeds"),
+    ] {
+        if has(model) {
+            let not = "not whether a capsule deploys (it cannot lock); README, Models";
+            lines.push(format!("{gives}, {not}"));
         }
+    }
+    let stiff = |point: &StudyPoint| {
+        point.scene.solver.model == ModelKind::Film && point.scene.film.compression > 0.0
+    };
+    if study.points().iter().any(stiff) {
+        lines.push(
+            "note: film.compression above 0 replaces bending stiffness and its effect depends on the mesh; compare \
+             verdicts at design.subdivisions 5, 8 and 12 and several seeds"
+                .to_owned(),
+        );
     }
     lines
 }

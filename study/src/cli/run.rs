@@ -11,7 +11,7 @@ use super::options::{
     OutputOptions, ProgressOptions, ResultsOption, SetOption, ThreadsOption, UnitsOption,
 };
 use super::print::{count, points_of_runs};
-use super::target::results_folder;
+use super::results::results_folder;
 use super::{Format, changes, memory, notes, output_error};
 use crate::analysis::answer::Answer;
 use crate::job::executor::Solver;

@@ -9,8 +9,8 @@ use serde_json::json;
 use super::options::{OutputOptions, ThreadsOption};
 use super::print::{TopicLine, count, duration, points_of_runs, print_rows};
 use super::queue::Workers;
+use super::results::{StudyArgs, folder};
 use super::run::listed;
-use super::target::{StudyArgs, folder};
 use super::{Format, changes, output_error};
 use crate::input::value::brief_number;
 use crate::job::row::{ColumnId, Counts};
@@ -69,7 +69,7 @@ fn checkpoints(results: &Results<'_>) -> Vec<(JobId, Option<f64>)> {
 /// # Errors
 /// When there are no results, or they cannot be read.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let root = folder(&args.study, &[])?;
+    let root = folder(&args.study)?;
     let results = Results::new(&Disk, &root);
     let cores = || std::thread::available_parallelism().ok();
     let threads = args.threads.count()?.or_else(cores).map_or(1, NonZero::get);

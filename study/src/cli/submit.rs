@@ -8,8 +8,8 @@ use clap::ValueEnum;
 
 use super::options::{OutputOptions, ResultsOption, SetOption};
 use super::print::{count, duration};
+use super::results::results_folder;
 use super::run::study_of_results;
-use super::target::results_folder;
 use super::{Format, output_error};
 use crate::cluster::notation;
 use crate::cluster::script::{Needs, Scripts};

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::picture::{self, Picture, refused};
 use super::print::print_rows;
-use super::target::{self, StudyArgs, Target};
+use super::results::{self, StudyArgs};
 use super::{Format, best, output_error};
 use crate::analysis::replicates::Condensed;
 use crate::chart::Source;
@@ -19,9 +19,8 @@ use crate::job::JobId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error};
 use crate::store::results::Results;
-use crate::store::stored::Stored;
-use crate::store::table::Table;
-use crate::study::{Border, Study};
+use crate::store::table::{Table, select};
+use crate::study::Study;
 
 mod work_precision;
 
@@ -129,13 +128,12 @@ impl Args {
 
     /// The parameters whose runs a chart condenses: the replicates of the study that it does not name. Chosen jobs and
     /// `--runs` are drawn one by one.
-    fn condensed(&self, study: Option<&Study>) -> Vec<String> {
+    fn condensed(&self, study: &Study) -> Vec<String> {
         if self.runs || !self.jobs.is_empty() {
             return Vec::new();
         }
         let named = trimmed(&[&self.by[..], &self.map, self.over.as_slice()].concat());
-        let replicates = study.map(Study::replicates).unwrap_or_default();
-        replicates.into_iter().filter(|name| !named.contains(name)).collect()
+        study.replicates().into_iter().filter(|name| !named.contains(name)).collect()
     }
 }
 
@@ -162,31 +160,29 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             return Err(refused("--title", title, "one title for several charts", one));
         }
     }
-    let mut target = target::open(&args.study, &args.set.set, &args.units)?;
+    let mut opened = results::open(&args.study, &args.set.set, &args.units)?;
     if args.work_precision {
         let cost = args.cost.unwrap_or_default();
-        return work_precision::run(&target, cost, args.output.format(), out);
+        return work_precision::run(&opened, cost, args.output.format(), out);
     }
-    target.add_keys(&[], args.condition.as_deref())?;
-    let Target { results, study, table, records, .. } = target;
-    let study = study.as_ref();
-    let (name, replicates) = (study_name(&results), args.condensed(study));
-    let (borders, all_replicates) = (borders(&results, study)?, study.map(Study::replicates));
-    let criterion = study.and_then(|study| Some(study.searched()?.1.text(study.result_limits())));
-    let search = study.and_then(|study| {
-        Some(Searched {
-            parameter: study.searched()?.0,
-            criterion: criterion.as_deref()?,
-            replicates: all_replicates.as_deref()?,
-            replicate_count: study.replicate_count(),
-            borders: &borders,
-        })
+    opened.add_keys(&[], args.condition.as_deref());
+    let results::Opened { stored, table } = opened;
+    let (results, study) = (&stored.results, &stored.study);
+    let (name, replicates) = (study_name(results), args.condensed(study));
+    let (searched, all_replicates) = (study.searched(), study.replicates());
+    let borders = if searched.is_some() { stored.borders() } else { Vec::new() };
+    let criterion = searched.map(|(_, on)| on.text(study.result_limits())).unwrap_or_default();
+    let search = searched.map(|(parameter, _)| Searched {
+        parameter,
+        criterion: &criterion,
+        replicates: &all_replicates,
+        replicate_count: study.replicate_count(),
+        borders: &borders,
     });
-    let limits = study.map_or(&[][..], Study::result_limits);
+    let limits = study.result_limits();
     let single = Source { limits, search, ..source(args, &name, &table)? };
     let is_mesh = |name: &String| name == MESH_PARAMETER;
-    let meshes = study.filter(|_| replicates.iter().any(is_mesh)).map(Study::meshes);
-    let meshes = meshes.unwrap_or_default();
+    let meshes = if replicates.iter().any(is_mesh) { study.meshes() } else { Vec::new() };
     let condensed =
         (!replicates.is_empty()).then(|| Condensed::of(single.table, &single.rows, &replicates));
     let source = condensed.as_ref().map_or_else(
@@ -210,7 +206,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         notes.iter().for_each(|note| args.note(note));
         charts
     };
-    let read = |id: &JobId| results.read_history(id, records.get(id));
+    let read = |id: &JobId| results.read_history(id, stored.record(id));
     let mut written: Vec<PathBuf> = Vec::new();
     for (kind, source) in &charts {
         let svg = match kind.svg(source, range, &read) {
@@ -236,30 +232,22 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
                 picture::write(path, &svg)?;
                 written.push(path.clone());
             }
-            None => written.extend(write(&results, &kind.file_name(), &svg)?),
+            None => written.extend(write(results, &kind.file_name(), &svg)?),
         }
     }
     print(&written, args.output.format(), out)?;
     if !args.quiet.quiet && args.output.format() == Format::Table {
-        best::print(study, &table, &single.rows);
+        best::print(Some(study), &table, &single.rows);
     }
     Ok(())
-}
-
-/// What the search of a study found.
-fn borders(results: &Results<'static>, study: Option<&Study>) -> Result<Vec<Border>> {
-    match study.filter(|study| study.searched().is_some()) {
-        Some(study) => Ok(Stored::read(results.clone())?.asked(study.clone()).borders()),
-        None => Ok(Vec::new()),
-    }
 }
 
 /// The rows that `--jobs` or `--where` choose.
 fn source<'a>(args: &Args, study: &'a str, table: &'a Table) -> Result<Source<'a>> {
     let rows = if args.jobs.is_empty() {
-        target::filtered(table, args.condition.as_deref())?
+        select::filtered(table, args.condition.as_deref())?
     } else {
-        target::jobs(table, &args.jobs)?
+        select::jobs(table, &args.jobs)?
     };
     if rows.is_empty() {
         let condition = args.condition.as_deref().unwrap_or("");

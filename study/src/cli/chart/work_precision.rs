@@ -6,7 +6,7 @@ use std::sync::Arc;
 use billow_solver::output::events::EventKind;
 
 use super::super::print::print_rows;
-use super::super::target::Target;
+use super::super::results::Opened;
 use super::super::{Format, output_error};
 use crate::analysis::work_precision::table::{COURSES, Histories, scenes};
 use crate::analysis::work_precision::{Cost, Course, Diagram, Errors, label};
@@ -15,7 +15,7 @@ use crate::chart::work_precision as pictures;
 use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::value::Value;
 use crate::job::JobId;
-use crate::platform::error::{Error, Result};
+use crate::platform::error::Result;
 use crate::store::history_file::StoredHistory;
 
 /// The cost of a diagram.
@@ -51,17 +51,13 @@ const COLUMNS: [&str; 16] = [
 /// Prints the front, in CSV and JSON every configuration, and draws the pictures.
 ///
 /// # Errors
-/// Results without their study; a history that cannot be read; a picture that cannot be written.
-pub fn run(target: &Target, cost: CostName, format: Format, out: &mut dyn Write) -> Result<()> {
-    let Target { results, study, table, records, .. } = target;
-    let study = study.as_ref().ok_or_else(|| {
-        let path = results.root().display().to_string();
-        let problem = "these results have no study";
-        Error::invalid_option("results folder", &path, problem, "a folder that `run` wrote", "")
-    })?;
+/// A history that cannot be read; a picture that cannot be written.
+pub fn run(opened: &Opened, cost: CostName, format: Format, out: &mut dyn Write) -> Result<()> {
+    let Opened { stored, table } = opened;
+    let (results, study) = (&stored.results, &stored.study);
     let read = |job: &str| {
         let id = JobId::from_digits(job)?;
-        match results.read_history(&id, records.get(&id)) {
+        match results.read_history(&id, stored.record(&id)) {
             Ok(history) => Some(of_history(&history)),
             Err(error) => {
                 eprintln!("billow: {error}");

@@ -2,10 +2,9 @@
 
 use std::io::Write;
 
-use super::opened::open_stored;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::points::{Points, chosen_runs};
-use super::target::{StudyArgs, find};
+use super::results::{self, StudyArgs};
 use super::{Format, output_error};
 use crate::analysis::compare::{self, Measure, Pair, Sets, Tolerance, measures_with};
 use crate::input::fraction::fraction;
@@ -14,6 +13,7 @@ use crate::job::row::{BetterSide, DerivedColumn};
 use crate::platform::error::{Error, Result};
 use crate::platform::nearest::did_you_mean;
 use crate::store::stored::Stored;
+use crate::store::table::select::find;
 use crate::store::table::{Column, Table};
 
 mod notes;
@@ -87,7 +87,9 @@ struct Comparison<'a> {
 /// An unknown parameter, value, measure or column; results that cannot be read.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let condition = args.condition.as_deref();
-    let (stored, table, _) = open_stored(&args.study, &args.set.set, &args.units, condition)?;
+    let mut opened = results::open(&args.study, &args.set.set, &args.units)?;
+    opened.add_keys(&[], condition);
+    let results::Opened { stored, table } = opened;
     print(args, &stored, &table, out)
 }
 

@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use super::options::{OutputOptions, QuietOption};
 use super::picture::{self, Picture, refused};
 use super::print::print_rows;
-use super::target::{StudyArgs, folder_of_job};
+use super::results::{StudyArgs, folder_of_job};
 use crate::chart::parameters::Parameter;
 use crate::input::value::Value;
 use crate::job::JobId;
@@ -197,7 +197,7 @@ fn source(args: &Args) -> Result<Source> {
         return Ok(Source { path: path.to_owned(), title: stem.into_owned(), out });
     }
     let root = folder_of_job(&args.job, &args.study)?;
-    let stored = super::stored::read(&root)?;
+    let stored = super::results::read(&root)?;
     let id = stored.job(&args.job)?;
     Ok(Source {
         path: stored.history_path(&id)?,

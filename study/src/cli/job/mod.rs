@@ -10,7 +10,7 @@ use serde_json::{Map, json};
 use super::limits;
 use super::options::{OutputOptions, QuietOption, UnitsOption};
 use super::print::{TopicLine, print_rows};
-use super::target::{StudyArgs, folder_of_job};
+use super::results::{self, StudyArgs, folder_of_job};
 use super::{Format, output_error};
 use crate::accuracy::PROMISED;
 use crate::input::value::{Value, brief_number, json_value};
@@ -70,7 +70,8 @@ struct Inspected {
 /// An unknown job; a history or results that cannot be read.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let root = folder_of_job(&args.job, &args.study)?;
-    let (mut stored, id) = super::stored::read_job(&root, &args.job)?;
+    let mut stored = results::read(&root)?;
+    let id = stored.job(&args.job)?;
     stored.units = args.units.apply(&stored.units, &|name| si_unit(&stored, name))?;
     let cells = stored.cells_of_job(&id);
     let job = Inspected { stored, id, cells };

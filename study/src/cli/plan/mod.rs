@@ -13,7 +13,7 @@ use forecast::forecast;
 use super::memory::Memory;
 use super::options::{OutputOptions, QuietOption, ResultsOption, SetOption, UnitsOption};
 use super::print::{self, Heading, print_quantities, print_rows};
-use super::target::results_folder;
+use super::results::results_folder;
 use super::{Format, changes, notes, output_error};
 use crate::input::units::{DisplayUnit, DisplayUnits};
 use crate::input::value::Value;

@@ -2,17 +2,16 @@
 
 use super::legend::PLUS_MINUS;
 use super::range;
-use super::study_keys;
-use super::target::filtered;
 use crate::accuracy::error_column;
 use crate::analysis::compare::measured;
 use crate::analysis::replicates::{self, Condensed, Runs};
 use crate::analysis::statistics::Spread;
-use crate::input::keys;
 use crate::input::value::Value;
+use crate::input::{expression, keys};
 use crate::job::proportion::Proportion;
 use crate::job::row::{CellType, DerivedColumn};
 use crate::platform::error::Result;
+use crate::store::table::select::filtered;
 use crate::store::table::{Column, Table};
 use columns::{columns, keys_start};
 
@@ -47,7 +46,7 @@ pub fn chosen_runs(
     condition: Option<&str>,
     replicates: &[String],
 ) -> Result<Vec<usize>> {
-    let names = study_keys::names_in(condition);
+    let names = condition.map(expression::names).unwrap_or_default();
     let parameter = |name: &str| {
         keys::find(name).map_or(name.to_owned(), |key| keys::short_name(key).to_owned())
     };

@@ -3,10 +3,9 @@
 use std::io::Write;
 
 use super::Format;
-use super::opened::open_stored;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::points::chosen_runs;
-use super::target::StudyArgs;
+use super::results::{self, StudyArgs};
 use crate::analysis::compare::{self, measures_with};
 use crate::analysis::ranking::{DEFAULT_MEASURES, Question, Ranking};
 use crate::job::row::{BetterSide, ColumnId};
@@ -61,7 +60,9 @@ struct Printed<'a> {
 /// An unknown parameter, measure or column; results that cannot be read, or of which nothing can be ranked.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let condition = args.condition.as_deref();
-    let (stored, table, _) = open_stored(&args.study, &args.set.set, &args.units, condition)?;
+    let mut opened = results::open(&args.study, &args.set.set, &args.units)?;
+    opened.add_keys(&[], condition);
+    let results::Opened { stored, table } = opened;
     if args.top == Some(0) {
         return Err(Error::invalid_option("--top", "0", "prints nothing", "1 or more", ""));
     }

@@ -35,7 +35,7 @@ const COMPARED: [ColumnId; 8] = [
 /// # Errors
 /// As [`super::run`]; unknown jobs; [`Error::JobsFailed`] when bits differ.
 pub(super) fn run(args: &Args, root: &Path, out: &mut dyn Write) -> Result<()> {
-    let stored = crate::cli::stored::read(root)?;
+    let stored = crate::cli::results::read(root)?;
     let jobs = chosen(&stored, &args.again)?;
     if !args.set.set.is_empty() {
         return run_changed(args, &stored, &jobs, out);

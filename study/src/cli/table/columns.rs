@@ -3,11 +3,11 @@
 use super::{MAX_LINE_WIDTH, MAX_WIDE_LINE_WIDTH};
 use crate::accuracy::error_column;
 use crate::cli::print::Heading;
-use crate::cli::target::find;
 use crate::cli::{Format, range};
 use crate::input::value::Value;
 use crate::job::row::{ColumnId, DerivedColumn};
 use crate::platform::error::Result;
+use crate::store::table::select::find;
 use crate::store::table::{Column, Table};
 
 /// The parameter whose values are compared for how gentle they are.

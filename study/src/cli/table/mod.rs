@@ -5,7 +5,7 @@ use std::io::Write;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::points::{Points, chosen_runs};
 use super::print::{Heading, print_quantities};
-use super::target::{self, StudyArgs, Target};
+use super::results::{self, Opened, StudyArgs};
 use super::{Format, best, legend, notes};
 use crate::input::keys::numerical::SEED;
 use crate::input::value::Value;
@@ -79,11 +79,11 @@ struct Listing {
 /// Results that cannot be read; an unknown column; an invalid condition.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let asked = asked(args);
-    let mut target = target::open(&args.study, &args.set.set, &args.units)?;
-    let all_columns = target.table.columns.len();
-    target.add_keys(&asked, args.condition.as_deref())?;
-    let Target { study, table, .. } = target;
-    print(args, study.as_ref(), &table, all_columns, out)
+    let mut opened = results::open(&args.study, &args.set.set, &args.units)?;
+    let all_columns = opened.table.columns.len();
+    opened.add_keys(&asked, args.condition.as_deref());
+    let Opened { stored, table } = opened;
+    print(args, Some(&stored.study), &table, all_columns, out)
 }
 
 /// The columns that the options name.

@@ -5,10 +5,10 @@ use super::columns::{compares_strategies, limited, main_measures, sorting};
 use crate::cli::Format;
 use crate::cli::points::{DEPLOYED, Points, RANGE, RUNS};
 use crate::cli::print::Heading;
-use crate::cli::target::find;
 use crate::input::value::Value;
 use crate::job::row::{ColumnId, DerivedColumn};
 use crate::platform::error::{Error, Result};
+use crate::store::table::select::find;
 use crate::store::table::{Column, Table};
 
 /// A column with its cells as printed.

@@ -3,9 +3,9 @@
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-use crate::cli::target::find;
 use crate::input::value::Value;
 use crate::platform::error::{Error, Result};
+use crate::store::table::select::find;
 use crate::store::table::{Column, Table};
 use crate::study::Study;
 

@@ -23,6 +23,7 @@ mod mesh_errors;
 pub mod parquet;
 pub mod reference;
 pub mod same_job;
+pub mod select;
 
 pub use mesh_errors::NOT_DEPLOYED;
 use same_job::PointRow;

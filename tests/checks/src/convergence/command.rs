@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use crate::convergence::{self, MeshCheck, ORDERS, SceneRuns, Trend, calibrate, fit, levels};
 use billow_study::accuracy::{MeshErrors, PROMISED};
+use billow_study::cli::Format;
 use billow_study::cli::options::{OutputOptions, QuietOption, ResultsOption};
 use billow_study::cli::print::{fraction, print_rows};
-use billow_study::cli::target::{StudyArgs, folder};
-use billow_study::cli::{Format, stored};
+use billow_study::cli::results::{self, StudyArgs};
 use billow_study::input::value::Value;
 use billow_study::job::row::ColumnId;
 use billow_study::platform::error::{Error, Result};
@@ -56,7 +56,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let mut all = Vec::new();
     for study in &args.studies {
         let given = StudyArgs { study: Some(study.clone()), results: ResultsOption::default() };
-        all.push(stored::read(&folder(&given, &[])?)?);
+        all.push(results::read(&results::folder(&given)?)?);
     }
     let mut names: Vec<String> = Vec::new();
     for stored in &all {
