@@ -74,7 +74,8 @@ fn a_limit_of_the_study_refuses_a_job_by_its_estimate() {
     study["grid"]["subdivisions"] = json!([1, 8]);
     study["solver"]["end_time"] = json!("1e-6 s");
     study["job_limits"] = json!({ "memory": "20 MB" });
-    let folder = TestFolder::finished(&study);
+    let folder = TestFolder::new(&study);
+    assert_eq!(folder.run(&["run", "grid.json", "-q"]).status.code(), Some(1));
     let rows = folder.rows("results/grid");
     assert_eq!(rows[0]["status"], "done");
     assert_eq!(rows[1]["status"], "out_of_memory");

@@ -39,7 +39,6 @@ pub mod picture;
 mod plan;
 mod points;
 pub mod print;
-mod queue;
 mod range;
 mod rank;
 pub mod results;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::changes;
-use super::options::{ResultsOption, UnitsOption};
+use super::options::{ResultsOption, SetOption, UnitsOption};
 use crate::input::expression;
 use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
@@ -68,6 +68,25 @@ impl Opened {
         let Self { stored, table } = self;
         add_keys(&stored.study, table, &stored.units, names, condition);
     }
+}
+
+/// The study to run, and its results folder: of a study file, or of a results folder or its study.json.
+///
+/// # Errors
+/// An invalid study file; [`Error::Disk`] for a damaged study.json.
+pub fn study_of(path: &Path, set: &SetOption, option: &ResultsOption) -> Result<(Study, PathBuf)> {
+    let is_stored = path.file_name().is_some_and(|name| name == "study.json");
+    let folder = if path.is_dir() { Some(path) } else { path.parent().filter(|_| is_stored) };
+    if let Some(folder) = folder {
+        let results = Results::new(&Disk, folder);
+        if results.journal_path().is_dir() && results.owner()?.is_some() {
+            let study = Study::load(&results.study_path(), &set.set)?;
+            return Ok((study, option.results.clone().unwrap_or_else(|| folder.to_owned())));
+        }
+    }
+    let study = Study::load(path, &set.set)?;
+    let root = results_folder(option, &study);
+    Ok((study, root))
 }
 
 /// Reads a results folder. Says on stderr what of it is damaged.

@@ -11,8 +11,7 @@ use super::options::{
     OutputOptions, ProgressOptions, ResultsOption, SetOption, ThreadsOption, UnitsOption,
 };
 use super::print::{count, points_of_runs};
-use super::results::results_folder;
-use super::{Format, changes, memory, notes, output_error};
+use super::{Format, changes, memory, notes, output_error, results};
 use crate::analysis::answer::Answer;
 use crate::job::executor::Solver;
 use crate::job::references::References;
@@ -23,7 +22,7 @@ use crate::platform::files::{Disk, disk_error};
 use crate::platform::stop::Stop;
 use crate::run::progress;
 use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run, Summary};
-use crate::run::selection::Selection;
+use crate::run::selection::{Part, Selection};
 use crate::store::reference_file::Unread;
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
@@ -34,10 +33,8 @@ use crate::study::plan;
 
 mod again;
 mod failures;
-mod scope;
 
 use failures::result;
-use scope::ScopeOptions;
 
 /// Arguments of `billow run`.
 #[derive(Debug, clap::Args)]
@@ -52,8 +49,9 @@ pub struct Args {
     /// a status as in --again timeout; comma-separated. With --set they run with other settings, beside the study.
     #[arg(long, value_name = "JOBS", value_delimiter = ',')]
     again: Vec<String>,
-    #[command(flatten)]
-    scope: ScopeOptions,
+    /// Run a part of the jobs, as in --points 2/8: the second of eight parts. `billow merge` joins the folders of the parts.
+    #[arg(long, value_name = "K/N")]
+    points: Option<String>,
     #[command(flatten)]
     options: RunOptions,
 }
@@ -81,11 +79,7 @@ pub(super) struct RunOptions {
 /// # Errors
 /// An invalid study, a disk error, jobs that failed, a signal.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let (file, folder) = study_of_results(&args.study)?;
-    let study = Study::load(&file, &args.set.set)?;
-    let root = folder
-        .filter(|_| args.results.results.is_none())
-        .unwrap_or_else(|| results_folder(&args.results, &study));
+    let (study, root) = results::study_of(&args.study, &args.set, &args.results)?;
     if !args.again.is_empty() {
         return again::run(args, &root, out);
     }
@@ -99,28 +93,18 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             eprintln!("note: {note}");
         }
     }
-    run_study(&study, &root, None, args.scope.selection()?, &args.options, out)
+    run_study(&study, &root, None, selection(args.points.as_deref())?, &args.options, out)
 }
 
-/// The study file that an argument names, and its results folder if it is that folder or its study.json.
-///
-/// # Errors
-/// [`Error::Disk`] for a damaged study.json.
-pub(super) fn study_of_results(path: &Path) -> Result<(PathBuf, Option<PathBuf>)> {
-    let is_stored = path.file_name().is_some_and(|name| name == "study.json");
-    let folder = if path.is_dir() {
-        path
-    } else {
-        match path.parent() {
-            Some(folder) if is_stored => folder,
-            _ => return Ok((path.to_owned(), None)),
-        }
-    };
-    let results = Results::new(&Disk, folder);
-    if !results.journal_path().is_dir() || results.owner()?.is_none() {
-        return Ok((path.to_owned(), None));
-    }
-    Ok((results.study_path(), Some(folder.to_owned())))
+/// The jobs that the run takes.
+fn selection(points: Option<&str>) -> Result<Selection> {
+    let Some(text) = points else { return Ok(Selection::All) };
+    let part = Part::parse(text).ok_or_else(|| {
+        let allowed = "K/N: part K of N, from 1/N to N/N, as in --points 2/8";
+        let next = "run every part in a folder of its own (--results), then billow merge FOLDER… --results FOLDER";
+        Error::invalid_option("--points", text, "is no part", allowed, next)
+    })?;
+    Ok(Selection::Part(part))
 }
 
 /// Runs the unfinished jobs of a study, or those to run `again`, and prints the result.

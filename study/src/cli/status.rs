@@ -1,6 +1,6 @@
 //! `billow status`: shows the progress of a study.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
 use std::num::NonZero;
 
@@ -8,10 +8,11 @@ use serde_json::json;
 
 use super::options::{OutputOptions, ThreadsOption};
 use super::print::{TopicLine, count, duration, points_of_runs, print_rows};
-use super::queue::Workers;
 use super::results::{StudyArgs, folder};
 use super::run::listed;
 use super::{Format, changes, output_error};
+use crate::cluster::slurm;
+use crate::cluster::submission::{self, Queued};
 use crate::input::value::brief_number;
 use crate::job::row::{ColumnId, Counts};
 use crate::job::{JobId, Status as JobStatus};
@@ -22,7 +23,6 @@ use crate::scene::summary;
 use crate::store::doctor::{self, Health};
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
-use crate::study::Study;
 
 /// Arguments of `billow status`.
 #[derive(Debug, clap::Args)]
@@ -37,16 +37,9 @@ pub struct Args {
 
 /// The progress of a study.
 struct Status<'a> {
-    results: &'a Results<'a>,
-    study: &'a Study,
-    health: &'a Health,
-    /// Number of runs planned.
-    runs: usize,
+    stored: &'a Stored<'a>,
+    health: Health,
     counts: Counts,
-    /// Number of jobs that must run again.
-    invalidated: usize,
-    /// Numbers of finished jobs of other versions of the physics, by version.
-    other_physics: BTreeMap<i64, usize>,
     /// Sum of the wall times of the jobs, s.
     seconds: f64,
     /// Number of jobs with a wall time.
@@ -55,13 +48,7 @@ struct Status<'a> {
     threads: usize,
     /// Jobs with a checkpoint, and its simulated time, s.
     checkpoints: Vec<(JobId, Option<f64>)>,
-    workers: Workers,
-}
-
-/// The jobs with a checkpoint, and its simulated time, s.
-fn checkpoints(results: &Results<'_>) -> Vec<(JobId, Option<f64>)> {
-    let ids = results.checkpoints().unwrap_or_default().into_iter();
-    ids.map(|id| (id.clone(), results.checkpoint_time(&id))).collect()
+    submission: Submission,
 }
 
 /// Runs `billow status`. It only reads, and takes no lock.
@@ -70,19 +57,13 @@ fn checkpoints(results: &Results<'_>) -> Vec<(JobId, Option<f64>)> {
 /// When there are no results, or they cannot be read.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let root = folder(&args.study)?;
-    let results = Results::new(&Disk, &root);
     let cores = || std::thread::available_parallelism().ok();
     let threads = args.threads.count()?.or_else(cores).map_or(1, NonZero::get);
     // Damage is part of the answer, not an error.
-    let stored = Stored::read(results)?;
-    let health = doctor::examine_stored(&stored);
-    print(&Status::new(&stored, &health, threads)?, args, out)
-}
-
-/// Prints the progress in the format asked for.
-fn print(status: &Status<'_>, args: &Args, out: &mut dyn Write) -> Result<()> {
+    let stored = Stored::read(Results::new(&Disk, &root))?;
+    let status = Status::new(&stored, threads)?;
     match args.output.format() {
-        Format::Table => status.print(out),
+        Format::Table => write!(out, "{}", status.text()).map_err(output_error),
         Format::Json => writeln!(out, "{}", status.json()).map_err(output_error),
         Format::Csv => {
             let rows = summary::rows(&status.json());
@@ -92,9 +73,8 @@ fn print(status: &Status<'_>, args: &Args, out: &mut dyn Write) -> Result<()> {
 }
 
 impl<'a> Status<'a> {
-    fn new(stored: &'a Stored<'a>, health: &'a Health, threads: usize) -> Result<Self> {
-        let mut counts = Counts::default();
-        let (mut seconds, mut timed) = (0.0, 0);
+    fn new(stored: &'a Stored<'a>, threads: usize) -> Result<Self> {
+        let (mut counts, mut seconds, mut timed) = (Counts::default(), 0.0, 0);
         for point in &stored.points {
             let cells = stored.cells(point);
             counts.add_cells(&cells);
@@ -103,19 +83,17 @@ impl<'a> Status<'a> {
                 timed += 1;
             }
         }
+        let checkpoints = stored.results.checkpoints().unwrap_or_default().into_iter();
+        let time_of = |id: JobId| (id.clone(), stored.results.checkpoint_time(&id));
         Ok(Self {
-            results: &stored.results,
-            study: &stored.study,
-            health,
-            runs: stored.planned_runs(),
+            stored,
+            health: doctor::examine_stored(stored),
             counts,
-            invalidated: stored.journal.invalidated.len(),
-            other_physics: other_physics(&stored.points, &stored.journal.records),
             seconds,
             timed,
             threads,
-            checkpoints: checkpoints(&stored.results),
-            workers: Workers::of(&stored.results, &|id| stored.record(id).is_some())?,
+            checkpoints: checkpoints.map(time_of).collect(),
+            submission: Submission::of(stored)?,
         })
     }
 
@@ -132,20 +110,20 @@ impl<'a> Status<'a> {
     }
 
     fn json(&self) -> serde_json::Value {
-        let counts = &self.counts;
-        json!({
-            "study": self.study.name,
-            "question": self.study.question,
-            "results": self.results.root().display().to_string(),
-            "running": self.health.running,
-            "points": self.runs,
+        let Self { stored, health, counts, .. } = self;
+        let mut json = json!({
+            "study": stored.study.name,
+            "question": stored.study.question,
+            "results": stored.results.root().display().to_string(),
+            "running": health.running,
+            "points": stored.planned_runs(),
             "jobs": counts.jobs(),
             "done": counts.of(JobStatus::Done),
             "failed": counts.failed(),
             "pending": counts.of(JobStatus::Pending),
             "infeasible": counts.of(JobStatus::Infeasible),
-            "other_physics": self.other_physics,
-            "invalidated": self.invalidated,
+            "other_physics": self.other_physics(),
+            "invalidated": stored.journal.invalidated.len(),
             "status": counts.status,
             "verdict": counts.verdict,
             "near_threshold": counts.near_threshold,
@@ -156,69 +134,75 @@ impl<'a> Status<'a> {
             "checkpoints": self.checkpoints.iter()
                 .map(|(id, time)| json!({"job": id.as_str(), "time": time}))
                 .collect::<Vec<_>>(),
-            "workers": self.workers.json(),
-            "broken": self.health.faults(),
-            "findings": self.health.findings.iter()
+            "broken": health.faults(),
+            "findings": health.findings.iter()
                 .map(|finding| format!("{}: {}", finding.path.display(), finding.problem))
                 .collect::<Vec<_>>(),
-        })
+        });
+        json["workers"] = self.submission.json();
+        json
     }
 
-    fn print(&self, out: &mut dyn Write) -> Result<()> {
-        let state = match (self.health.running, self.counts.of(JobStatus::Pending)) {
+    /// Numbers of finished jobs of other versions of the physics, by version.
+    fn other_physics(&self) -> BTreeMap<i64, usize> {
+        other_physics(&self.stored.points, &self.stored.journal.records)
+    }
+
+    fn text(&self) -> String {
+        let Self { stored, health, counts, .. } = self;
+        let state = match (health.running, counts.of(JobStatus::Pending)) {
             (true, _) => "running: another process holds its lock",
             (false, 0) => "finished",
             (false, _) => "not running",
         };
-        writeln!(out, "{}: {state}", self.study.name).map_err(output_error)?;
         let mut lines: Vec<TopicLine> = Vec::new();
-        if !self.study.question.is_empty() {
-            lines.push(("question", quote::printable(&self.study.question)));
+        if !stored.study.question.is_empty() {
+            lines.push(("question", quote::printable(&stored.study.question)));
         }
         lines.extend(self.job_lines());
-        lines.extend(changes::other_physics(&self.other_physics).map(|text| ("physics", text)));
+        lines.extend(changes::other_physics(&self.other_physics()).map(|text| ("physics", text)));
         lines.extend(self.time_lines());
-        lines.extend(self.workers.lines());
+        lines.extend(self.submission.lines());
         lines.extend(self.checkpoint_line());
         lines.push(("broken", self.broken()));
-        lines.push(("results", self.results.root().display().to_string()));
-        for (topic, text) in &lines {
-            writeln!(out, "  {topic:<9} {text}").map_err(output_error)?;
-        }
-        Ok(())
+        lines.push(("results", stored.results.root().display().to_string()));
+        let lines = lines.iter().map(|(topic, text)| format!("  {topic:<9} {text}\n"));
+        format!("{}: {state}\n{}", stored.study.name, lines.collect::<String>())
     }
 
     /// Numbers of points and jobs, failures and verdicts.
     fn job_lines(&self) -> Vec<TopicLine> {
-        let counts = &self.counts;
-        let (infeasible, pending) =
-            (counts.of(JobStatus::Infeasible), counts.of(JobStatus::Pending));
-        let jobs = count(counts.jobs(), "job");
-        let points = points_of_runs(self.study, self.runs);
-        let duplicates = match self.runs.saturating_sub(counts.rows()) {
+        let Self { stored, counts, .. } = self;
+        let with = |number: usize, text: &str| match number {
+            0 => String::new(),
+            number => text.replace("{}", &number.to_string()),
+        };
+        let of = |status| counts.of(status);
+        let runs = stored.planned_runs();
+        let duplicates = match runs.saturating_sub(counts.rows()) {
             0 => String::new(),
             number => format!(", {}", count(number, "duplicate")),
         };
-        let mut lines =
-            vec![("points", format!("{points}: {jobs}, {infeasible} infeasible{duplicates}"))];
-        let invalidated = match self.invalidated {
-            0 => String::new(),
-            number => format!(" ({number} invalidated)"),
-        };
-        let (done, failed) = (counts.of(JobStatus::Done), counts.failed());
-        lines.push((
-            "jobs",
-            format!("{done} done, {failed} failed, {pending} pending{invalidated}"),
-        ));
+        let points = format!(
+            "{}: {}, {} infeasible{duplicates}",
+            points_of_runs(&stored.study, runs),
+            count(counts.jobs(), "job"),
+            of(JobStatus::Infeasible)
+        );
+        let jobs = format!(
+            "{} done, {} failed, {} pending{}",
+            of(JobStatus::Done),
+            counts.failed(),
+            of(JobStatus::Pending),
+            with(stored.journal.invalidated.len(), " ({} invalidated)")
+        );
+        let mut lines = vec![("points", points), ("jobs", jobs)];
         let failures = counts.failures();
         if !failures.is_empty() {
             lines.push(("failed", format!("{}; billow job JOB explains one", listed(&failures))));
         }
         if !counts.verdict.is_empty() {
-            let near = match counts.near_threshold {
-                0 => String::new(),
-                near => format!(" ({near} near a threshold)"),
-            };
+            let near = with(counts.near_threshold, " ({} near a threshold)");
             lines.push(("verdict", format!("{}{near}", listed(&counts.verdict))));
         }
         lines
@@ -238,16 +222,11 @@ impl<'a> Status<'a> {
             lines.push(("job time", text));
         }
         if self.counts.of(JobStatus::Pending) > 0 {
-            let text = match self.remaining_seconds() {
-                Some(remaining) => {
-                    let threads = count(self.threads, "thread");
-                    format!(
-                        "about {} on {threads} (--threads N for another number)",
-                        duration(remaining)
-                    )
-                }
-                None => "unknown: no job has run yet".to_owned(),
-            };
+            let unknown = || "unknown: no job has run yet".to_owned();
+            let text = self.remaining_seconds().map_or_else(unknown, |remaining| {
+                let (time, threads) = (duration(remaining), count(self.threads, "thread"));
+                format!("about {time} on {threads} (--threads N for another number)")
+            });
             lines.push(("remaining", text));
         }
         lines
@@ -256,35 +235,90 @@ impl<'a> Status<'a> {
     /// Jobs that continue from a checkpoint.
     fn checkpoint_line(&self) -> Option<TopicLine> {
         const MAX_SHOWN: usize = 4;
-        let shown = self.checkpoints.iter().take(MAX_SHOWN).map(|(id, time)| {
-            let at = time.map_or_else(String::new, |time| format!(" at {} s", brief_number(time)));
-            format!("{}{at}", id.short())
+        let shown = self.checkpoints.iter().take(MAX_SHOWN).map(|(id, time)| match time {
+            Some(time) => format!("{} at {} s", id.short(), brief_number(*time)),
+            None => id.short().to_owned(),
         });
         let mut shown: Vec<String> = shown.collect();
         if self.checkpoints.len() > MAX_SHOWN {
             shown.push(format!("and {} more", self.checkpoints.len() - MAX_SHOWN));
         }
         let jobs = count(self.checkpoints.len(), "job");
-        (!shown.is_empty())
-            .then(|| ("stored", format!("{jobs} with a checkpoint: {}", shown.join(", "))))
+        let text = format!("{jobs} with a checkpoint: {}", shown.join(", "));
+        (!shown.is_empty()).then_some(("stored", text))
     }
 
     /// The first fault, or that there is none.
     fn broken(&self) -> String {
-        let root = self.results.root().display();
-        let findings = &self.health.findings;
-        match (self.health.faults(), findings.first()) {
-            (0, None) => "nothing".to_owned(),
-            (0, Some(_)) => {
-                format!("nothing; {}: billow doctor {root}", count(findings.len(), "note"))
+        let doctor = format!("billow doctor {}", self.stored.results.root().display());
+        let Some(first) = self.health.findings.first() else { return "nothing".to_owned() };
+        let more = match self.health.faults() {
+            0 => {
+                let notes = count(self.health.findings.len(), "note");
+                return format!("nothing; {notes}: {doctor}");
             }
-            (faults, Some(first)) => {
-                let more =
-                    if faults > 1 { format!(", and {} more", faults - 1) } else { String::new() };
-                let path = first.path.display();
-                format!("{path}: {}{more}; next: billow doctor {root}", first.problem)
-            }
-            (_, None) => unreachable!("every fault is a finding"),
+            1 => String::new(),
+            faults => format!(", and {} more", faults - 1),
+        };
+        format!("{}: {}{more}; next: {doctor}", first.path.display(), first.problem)
+    }
+}
+
+/// The last submission of a study: its tasks in the queue of the cluster, and what they have stored.
+struct Submission {
+    queued: Option<Queued>,
+    /// The tasks in the queue by state, or why the queue cannot be asked.
+    queue: std::result::Result<BTreeMap<String, usize>, String>,
+    /// Number of jobs that tasks have ended and that are not merged yet.
+    unmerged: usize,
+    /// The command that merges them.
+    merge: String,
+}
+
+impl Submission {
+    /// Reads the results of the tasks, and asks the queue. A study that was never submitted asks no queue.
+    ///
+    /// # Errors
+    /// [`crate::platform::error::Error::Disk`].
+    fn of(stored: &Stored<'_>) -> Result<Self> {
+        let results = &stored.results;
+        let queued = submission::last_queued(results)?;
+        let queue = queued.as_ref().map_or_else(|| Ok([].into()), slurm::queue);
+        let mut unmerged = BTreeSet::new();
+        for part in results.parts()? {
+            let ended = part.journal()?.records.into_keys();
+            unmerged.extend(ended.filter(|id| stored.record(id).is_none()));
         }
+        let merge = format!("billow merge {}", results.root().display());
+        Ok(Self { queued, queue, unmerged: unmerged.len(), merge })
+    }
+
+    fn lines(&self) -> Vec<TopicLine> {
+        let mut lines = Vec::new();
+        if let Some(Queued { array, merge }) = &self.queued {
+            let state = match &self.queue {
+                Ok(states) if states.is_empty() => "has left the queue".to_owned(),
+                Ok(states) => format!("in the queue: {}", listed(states).to_lowercase()),
+                Err(problem) => format!("the queue cannot be asked: {problem}"),
+            };
+            lines.push(("slurm", format!("array {array}, merge {merge}: {state}")));
+        }
+        if self.unmerged > 0 {
+            let jobs = count(self.unmerged, "job");
+            lines.push(("parts", format!("{jobs} ended by tasks, not merged yet: {}", self.merge)));
+        }
+        lines
+    }
+
+    fn json(&self) -> serde_json::Value {
+        let slurm = self.queued.as_ref().map(|Queued { array, merge }| {
+            json!({
+                "array": array,
+                "merge": merge,
+                "queue": self.queue.as_ref().ok(),
+                "problem": self.queue.as_ref().err(),
+            })
+        });
+        json!({ "slurm": slurm, "unmerged": self.unmerged })
     }
 }

@@ -8,9 +8,7 @@ use clap::ValueEnum;
 
 use super::options::{OutputOptions, ResultsOption, SetOption};
 use super::print::{count, duration};
-use super::results::results_folder;
-use super::run::study_of_results;
-use super::{Format, output_error};
+use super::{Format, output_error, results};
 use crate::cluster::notation;
 use crate::cluster::script::{Needs, Scripts};
 use crate::cluster::slurm;
@@ -92,11 +90,7 @@ struct Tasks {
 /// # Errors
 /// An invalid study; a folder in which runs work, or whose last submission is still in the queue; what Slurm refuses.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let (file, folder) = study_of_results(&args.study)?;
-    let study = Study::load(&file, &args.set.set)?;
-    let root = folder
-        .filter(|_| args.results.results.is_none())
-        .unwrap_or_else(|| results_folder(&args.results, &study));
+    let (study, root) = results::study_of(&args.study, &args.set, &args.results)?;
     let root = std::path::absolute(&root).map_err(|error| disk_error(&root, &error))?;
     let Engine::Slurm = args.engine;
     let results = Results::new(&Disk, &root);
