@@ -4,8 +4,6 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
-
 use super::options::{OutputOptions, ResultsOption, SetOption};
 use super::print::{count, duration};
 use super::{Format, output_error, results};
@@ -32,21 +30,11 @@ const TASK_SECONDS: f64 = 600.0;
 /// Estimated time over the wall time of a task, at most. Chosen: estimates and machines differ by a factor of two.
 const MAX_ESTIMATE_RATIO: f64 = 0.4;
 
-/// A scheduler.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Engine {
-    /// Slurm.
-    Slurm,
-}
-
 /// Arguments of `billow submit`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Study file, or a results folder.
     study: PathBuf,
-    /// The scheduler.
-    #[arg(long, value_enum, default_value = "slurm")]
-    engine: Engine,
     /// Partition of the tasks [default: that of the cluster].
     #[arg(long, value_name = "NAME")]
     partition: Option<String>,
@@ -92,7 +80,6 @@ struct Tasks {
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let (study, root) = results::study_of(&args.study, &args.set, &args.results)?;
     let root = std::path::absolute(&root).map_err(|error| disk_error(&root, &error))?;
-    let Engine::Slurm = args.engine;
     let results = Results::new(&Disk, &root);
     if !args.dry_run {
         refuse_queued(&results)?;
@@ -254,6 +241,19 @@ impl Tasks {
             duration(libm::ceil(self.seconds))
         )
     }
+
+    fn json(&self, study: &str, more: &[(&str, serde_json::Value)]) -> serde_json::Value {
+        let mut json = serde_json::json!({
+            "study": study,
+            "jobs": self.jobs,
+            "tasks": self.number,
+            "estimated_seconds": self.seconds,
+        });
+        for (name, value) in more {
+            json[*name] = value.clone();
+        }
+        json
+    }
 }
 
 /// Prints what a submission would write; `None` where nothing is to be submitted.
@@ -266,14 +266,8 @@ fn print_scripts(
 ) -> Result<()> {
     if format == Format::Json {
         let [array, merge] = scripts.map_or([None; 2], |scripts| scripts.map(Some));
-        let json = serde_json::json!({
-            "study": study,
-            "jobs": tasks.jobs,
-            "tasks": tasks.number,
-            "estimated_seconds": tasks.seconds,
-            "array_script": array,
-            "merge_script": merge,
-        });
+        let json =
+            tasks.json(study, &[("array_script", array.into()), ("merge_script", merge.into())]);
         return writeln!(out, "{json}").map_err(output_error);
     }
     if let Some([array, merge]) = scripts {
@@ -297,25 +291,21 @@ fn print(
     out: &mut dyn Write,
 ) -> Result<()> {
     let folder = results.submission_path();
-    let folder = folder.display();
+    let folder = folder.display().to_string();
     let Queued { array, merge } = queued;
-    let written = if format == Format::Json {
-        let json = serde_json::json!({
-            "study": study,
-            "folder": folder.to_string(),
-            "jobs": tasks.jobs,
-            "tasks": tasks.number,
-            "estimated_seconds": tasks.seconds,
-            "array": array,
-            "merge": merge,
-        });
-        writeln!(out, "{json}")
-    } else {
-        writeln!(
-            out,
+    let text = match format {
+        Format::Json => {
+            let more = [
+                ("folder", folder.into()),
+                ("array", array.as_str().into()),
+                ("merge", merge.as_str().into()),
+            ];
+            tasks.json(study, &more).to_string()
+        }
+        _ => format!(
             "{}\n  slurm    array {array}, then {merge} writes the table\n  folder   {folder}\n  next     billow status",
             tasks.summary(study)
-        )
+        ),
     };
-    written.map_err(output_error)
+    writeln!(out, "{text}").map_err(output_error)
 }
