@@ -169,10 +169,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
 const GROUPS: [(&str, &[&str]); 4] = [
     ("Design", &["fold", "solve", "keys"]),
     ("Study", &["plan", "advise", "run", "submit", "merge", "status"]),
-    (
-        "Answers",
-        &["table", "compare", "rank", "borders", "chart", "pareto", "frames", "job", "export"],
-    ),
+    ("Answers", &["table", "compare", "rank", "borders", "chart", "frames", "job", "export"]),
     ("Care", &["doctor", "completions"]),
 ];
 
