@@ -45,6 +45,7 @@ fn a_lost_or_foreign_table_changes_no_answer_and_is_restored() {
     let output = folder.run(&["table"]);
     assert_eq!(output.status.code(), Some(0));
     assert_eq!(output.stdout, rows);
+    assert!(folder.run(&["doctor"]).stdout.windows(18).any(|text| text == b"not a Parquet file"));
     for damage in [false, true] {
         if damage {
             fs::write(&path, &table[..table.len() / 2]).unwrap();

@@ -19,8 +19,8 @@ import time
 from pathlib import Path
 
 # Bounds at 100,000 jobs: seconds, megabytes.
-BOUNDS = {"status": 2, "run": 5, "job": 1, "compare": 5}
-MAX_MEGABYTES = 300
+BOUNDS = {"status": 3, "job": 3}
+MAX_MEGABYTES = 500
 # Values of the axes beside the mass flow rate: N, M.
 DESIGNS = 20
 

@@ -17,13 +17,16 @@ use sha2::{Digest, Sha256};
 
 /// Bytes of the hash that an id keeps.
 const ID_BYTES: usize = 16;
+/// Digits of an id.
+const DIGITS: usize = 2 * ID_BYTES;
 /// Whole numbers from here on are not all exact as `f64`: 2^53.
 const FIRST_INEXACT_INTEGER: f64 = 9_007_199_254_740_992.0;
 
 /// Id of a job: 32 lower-case hexadecimal digits, the first half of the SHA-256 of the canonical
 /// JSON of its scene and the physics version.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct JobId(String);
+#[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub struct JobId([u8; DIGITS]);
 
 impl JobId {
     /// The id of a scene under this physics version.
@@ -34,34 +37,58 @@ impl JobId {
             scene: &'a Scene,
         }
         let text = canonical_json(&Identity { physics_version: PHYSICS_VERSION, scene });
-        let mut digits = String::with_capacity(2 * ID_BYTES);
-        for byte in &Sha256::digest(text.as_bytes())[..ID_BYTES] {
-            let _ = write!(digits, "{byte:02x}");
+        let digit = |four_bits: u8| b"0123456789abcdef"[usize::from(four_bits)];
+        let mut digits = [0; DIGITS];
+        let hash = Sha256::digest(text.as_bytes());
+        for (pair, byte) in digits.chunks_exact_mut(2).zip(&hash) {
+            pair.copy_from_slice(&[digit(byte >> 4), digit(byte & 15)]);
         }
         Self(digits)
     }
 
     /// The id with these digits, as read from disk; `None` for a text that is not an id.
     pub fn from_digits(digits: &str) -> Option<Self> {
-        let valid = digits.len() == 2 * ID_BYTES
-            && digits.bytes().all(|byte| byte.is_ascii_digit() || (b'a'..=b'f').contains(&byte));
-        valid.then(|| Self(digits.to_owned()))
+        let digits: [u8; DIGITS] = digits.as_bytes().try_into().ok()?;
+        let is_digit = |byte: &u8| byte.is_ascii_digit() || (b'a'..=b'f').contains(byte);
+        digits.iter().all(is_digit).then_some(Self(digits))
     }
 
     /// The digits.
     pub fn as_str(&self) -> &str {
-        &self.0
+        // Digits are ASCII.
+        std::str::from_utf8(&self.0).unwrap_or_default()
     }
 
     /// The first eight digits, as tables print them. Commands accept any unique prefix.
     pub fn short(&self) -> &str {
-        &self.0[..8]
+        &self.as_str()[..8]
     }
 }
 
 impl fmt::Display for JobId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
+        f.write_str(self.as_str())
+    }
+}
+
+impl fmt::Debug for JobId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+impl From<JobId> for String {
+    fn from(id: JobId) -> Self {
+        id.as_str().to_owned()
+    }
+}
+
+impl TryFrom<String> for JobId {
+    type Error = String;
+
+    fn try_from(digits: String) -> Result<Self, String> {
+        Self::from_digits(&digits)
+            .ok_or_else(|| format!("{digits:?} is not a job id ({DIGITS} hexadecimal digits)"))
     }
 }
 

@@ -8,7 +8,7 @@ use crate::job::row::ColumnId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::disk_error;
 use crate::platform::stop::Stop;
-use crate::run::alone::{self, Alone};
+use crate::run::exclusive::{self, Exclusive};
 use crate::store::history_file;
 use crate::store::journal::{Journal, Record, Writer};
 use crate::store::results::Results;
@@ -30,7 +30,7 @@ fn write_table(results: &Results<'_>) -> Result<()> {
 /// [`Error::Disk`], also when another command holds the lock.
 pub fn prepare(results: &Results<'_>, study: (&str, &Json)) -> Result<()> {
     let _lock = results.lock()?;
-    alone::open(results, Some(study)).map(|_| ())
+    exclusive::open(results, Some(study)).map(|_| ())
 }
 
 /// What a merge of folders did.
@@ -63,7 +63,7 @@ pub fn merge(
         }
     }
     let lock = target.lock()?;
-    let Alone { mut journal, mut writer, .. } = alone::open(target, Some((name, study)))?;
+    let Exclusive { mut journal, mut writer, .. } = exclusive::open(target, Some((name, study)))?;
     let mut merged = Merged::default();
     for source in sources {
         copy(source, target, &mut journal, &mut writer, stop, &mut merged)?;

@@ -1,6 +1,7 @@
 //! The contents of a results folder: its study, planned again, and its journal. Reading changes
 //! nothing and holds no lock, so it works while a run goes on.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
@@ -55,8 +56,16 @@ impl<'a> Stored<'a> {
             };
             return Err(Error::Disk { path: results.root().to_owned(), problem });
         }
-        let study = Study::load(&results.study_path(), &[])?;
         let journal = results.journal()?;
+        Self::with_journal(results, journal)
+    }
+
+    /// Reads a folder whose journal was read.
+    ///
+    /// # Errors
+    /// When study.json cannot be read.
+    pub fn with_journal(results: Results<'a>, journal: Journal) -> Result<Self> {
+        let study = Study::load(&results.study_path(), &[])?;
         let points = planned(&study, &journal);
         let units = study.display_units().clone();
         Ok(Self { results, study, units, journal, points })
@@ -72,15 +81,15 @@ impl<'a> Stored<'a> {
     }
 
     /// The row of a point.
-    pub fn cells(&self, point: &Point) -> Cells {
+    pub fn cells(&self, point: &Point) -> Cow<'_, Cells> {
         journal::cells_of(point, &self.journal.records)
-            .unwrap_or_else(|| Cells::new(Status::Pending))
+            .unwrap_or_else(|| Cow::Owned(Cells::new(Status::Pending)))
     }
 
     /// The row of a job: that of its point, or for a job without one its record.
     pub fn cells_of_job(&self, id: &JobId) -> Cells {
         if let Some(point) = self.point(id) {
-            return self.cells(point);
+            return self.cells(point).into_owned();
         }
         let record = self.record(id).map(|record| record.cells.clone());
         record.unwrap_or_else(|| Cells::new(Status::Pending))
@@ -241,6 +250,9 @@ pub fn planned(study: &Study, journal: &Journal) -> Vec<Point> {
     {
         last = Some(generation.number);
         plan::add_generation(&mut points, generation);
+        if !study.has_generations() {
+            break;
+        }
         finished = finished::rows(&points, &journal.records, study.result_limits());
     }
     points

@@ -214,6 +214,11 @@ impl Study {
         self.grid.replicate_count()
     }
 
+    /// Whether its finished rows decide about further points.
+    pub fn has_generations(&self) -> bool {
+        self.grid.search.is_some()
+    }
+
     /// The parameter along which it searches a border, and what changes there; `None` without a search.
     pub fn searched(&self) -> Option<(&str, Criterion)> {
         let search = self.grid.search.as_ref()?;

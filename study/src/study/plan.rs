@@ -7,6 +7,8 @@ use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+
 use crate::job::point::Point;
 use crate::job::{Job, JobId};
 use crate::study::finished::FinishedRow;
@@ -122,8 +124,8 @@ pub fn borders(study: &Study, finished: &[FinishedRow]) -> Vec<Border> {
 pub(super) fn generation(number: u32, planned: &[StudyPoint]) -> Generation {
     let mut points: Vec<Point> = Vec::with_capacity(planned.len());
     let mut positions: HashMap<JobId, usize> = HashMap::new();
-    for point in planned {
-        let id = JobId::of(&point.scene);
+    let ids: Vec<JobId> = planned.par_iter().map(|point| JobId::of(&point.scene)).collect();
+    for (point, id) in planned.iter().zip(ids) {
         match positions.entry(id) {
             Entry::Occupied(entry) => points[*entry.get()].merged.push(point.parameters.clone()),
             Entry::Vacant(entry) => {

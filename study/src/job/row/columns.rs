@@ -9,6 +9,9 @@
 //!
 //! In the summary table, the job id and the parameters of the study stand before these columns.
 
+use std::collections::HashMap;
+use std::sync::LazyLock;
+
 use billow_solver::output::measures::Verdict;
 
 use super::cell::Cell;
@@ -378,6 +381,8 @@ impl ColumnId {
 
     /// The column with that name.
     pub fn from_name(name: &str) -> Option<Self> {
-        COLUMNS.iter().find(|column| column.name == name).map(|column| column.id)
+        static NAMES: LazyLock<HashMap<&str, ColumnId>> =
+            LazyLock::new(|| COLUMNS.iter().map(|column| (column.name, column.id)).collect());
+        NAMES.get(name).copied()
     }
 }

@@ -51,10 +51,6 @@ impl Files for FailingFiles {
         Disk.read(path)
     }
 
-    fn read_part(&self, path: &Path, offset: u64, length: usize) -> io::Result<Vec<u8>> {
-        Disk.read_part(path, offset, length)
-    }
-
     fn stamp(&self, path: &Path) -> io::Result<Stamp> {
         Disk.stamp(path)
     }

@@ -42,12 +42,6 @@ pub trait Files: Send + Sync {
     /// The error of the system.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
 
-    /// Reads `length` bytes of a file from the byte `offset` on.
-    ///
-    /// # Errors
-    /// The error of the system; a file that ends before.
-    fn read_part(&self, path: &Path, offset: u64, length: usize) -> io::Result<Vec<u8>>;
-
     /// Size and time of a file.
     ///
     /// # Errors

@@ -22,8 +22,8 @@ use crate::job::row::Counts;
 use crate::job::{JobId, Parameters};
 use crate::platform::error::Result;
 use crate::platform::stop::Stop;
-use crate::run::alone;
 use crate::run::event::{Event, Reporter};
+use crate::run::exclusive;
 use crate::run::selection::Selection;
 use crate::store::journal::Record;
 use crate::store::results::Results;
@@ -103,12 +103,12 @@ pub struct Summary {
 /// stored before are kept.
 pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
     let lock = run.results.lock()?;
-    let alone = alone::open(&run.results, Some((run.name, run.study)))?;
-    for fault in &alone.faults {
+    let opened = exclusive::open(&run.results, Some((run.name, run.study)))?;
+    for fault in &opened.faults {
         reporter.event(&Event::Note(fault.to_string()));
     }
-    let log = AttemptLog::new(&run.results, &lock, alone.writer)?;
-    let mut state = State::new(run, &log, alone.journal);
+    let log = AttemptLog::new(&run.results, &lock, opened.writer)?;
+    let mut state = State::new(run, &log, opened.journal);
     state.remove_checkpoints()?;
     run_generations(run, &mut state, reporter)?;
     state.write_table()?;

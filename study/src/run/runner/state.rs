@@ -1,5 +1,6 @@
 //! The thread of a run that stores results: what is finished, what is missing, what came back.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
 
@@ -261,7 +262,7 @@ impl<'a, 'w> State<'a, 'w> {
         Ok(())
     }
 
-    fn cells(&self, point: &Point) -> Option<Cells> {
+    fn cells(&self, point: &Point) -> Option<Cow<'_, Cells>> {
         journal::cells_of(point, &self.records)
     }
 
@@ -274,7 +275,8 @@ impl<'a, 'w> State<'a, 'w> {
     pub(super) fn summary(&self) -> Summary {
         let mut summary = Summary { signal: self.run.stop.requested(), ..self.summary.clone() };
         for point in &self.points {
-            let cells = self.cells(point).unwrap_or_else(|| Cells::new(Status::Pending));
+            let cells =
+                self.cells(point).unwrap_or_else(|| Cow::Owned(Cells::new(Status::Pending)));
             summary.counts.add_cells(&cells);
         }
         summary

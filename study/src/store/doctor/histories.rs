@@ -1,7 +1,8 @@
 //! Checks the history file of every record.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
+use std::collections::{HashMap, HashSet};
+use std::ffi::OsString;
+use std::path::Path;
 
 use super::{Depth, Health, RUN_AGAIN};
 use crate::job::JobId;
@@ -54,17 +55,20 @@ pub(super) fn damaged(results: &Results<'_>, journal: &Journal) -> Result<Vec<(J
 /// The problem of a file that does not exist.
 const MISSING: &str = "missing";
 
-/// The files of the folders of histories, listed once per folder.
+/// The names of the files of the folders of histories, listed once per folder.
 #[derive(Default)]
-struct Existing(BTreeMap<PathBuf, BTreeSet<PathBuf>>);
+struct Existing(HashMap<OsString, HashSet<OsString>>);
 
 impl Existing {
-    fn contains(&mut self, results: &Results<'_>, path: &PathBuf) -> bool {
-        let folder = path.parent().unwrap_or(path).to_owned();
-        let listed = self.0.entry(folder).or_insert_with_key(|folder| {
-            results.files().list(folder).unwrap_or_default().into_iter().collect()
-        });
-        listed.contains(path)
+    fn contains(&mut self, results: &Results<'_>, path: &Path) -> bool {
+        let (Some(folder), Some(name)) = (path.parent(), path.file_name()) else { return false };
+        let key = folder.file_name().unwrap_or_default();
+        if !self.0.contains_key(key) {
+            let paths = results.files().list(folder).unwrap_or_default();
+            let names = paths.iter().filter_map(|path| path.file_name().map(OsString::from));
+            self.0.insert(key.to_owned(), names.collect());
+        }
+        self.0[key].contains(name)
     }
 }
 

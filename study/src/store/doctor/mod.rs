@@ -117,14 +117,14 @@ pub fn examine(results: &Results<'_>, depth: Depth) -> Health {
     })
 }
 
-/// The same at [`Depth::Names`], of results that were read.
+/// The same at [`Depth::Names`], of results that were read, without a comparison of the table with the journal.
 pub fn examine_stored(stored: &Stored<'_>) -> Health {
     let Stored { results, journal, points, .. } = stored;
     examined(results, &|health, paths| {
         note_journal(results, journal, health);
         note_unplanned(results, points, journal, health);
         check_files(results, journal, Depth::Names, paths, health);
-        check_table(stored, health);
+        note_missing_table(results, health);
     })
 }
 
@@ -284,6 +284,16 @@ fn note_journal(results: &Results<'_>, journal: &Journal, health: &mut Health) {
     }
 }
 
+/// Says that no run has written the table yet.
+fn note_missing_table(results: &Results<'_>, health: &mut Health) {
+    let path = results.table_path();
+    if !path.exists() && !health.running {
+        let next =
+            "nothing: `billow table` reads the journal; `billow run` of its study writes the table";
+        health.note(&path, "no table yet", next);
+    }
+}
+
 /// Compares the summary table with plan and journal.
 fn check_table(stored: &Stored<'_>, health: &mut Health) {
     let path = stored.results.table_path();
@@ -291,14 +301,7 @@ fn check_table(stored: &Stored<'_>, health: &mut Health) {
         "run `billow run` of its study, or `billow doctor --repair`: it writes the table again";
     let table = match stored.results.read_table() {
         Ok(table) => table,
-        Err(_) if !path.exists() => {
-            if !health.running {
-                let next = "nothing: `billow table` reads the journal instead; `billow run` of its \
-                            study writes the table";
-                health.note(&path, "no table yet", next);
-            }
-            return;
-        }
+        Err(_) if !path.exists() => return note_missing_table(&stored.results, health),
         Err(Error::Disk { path, problem }) => {
             let problem = problem.split('\n').next().unwrap_or_default();
             let newer = problem.contains("this program reads up to");

@@ -1,12 +1,16 @@
 //! The lines of a journal: header, ended job, invalidated job, what is known of attempts, study.
 
+use std::borrow::Cow;
+use std::fmt;
+
 use billow_solver::platform::seal;
-use serde::{Deserialize, Serialize};
+use serde::de::{Error as _, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, json};
 
 use super::{Death, Record};
 use crate::input::value::Value;
-use crate::job::row::{CellType, Cells, ColumnId};
+use crate::job::row::{COLUMNS, CellType, Cells, ColumnId};
 use crate::job::{JobId, Status};
 use crate::platform::files::Stamp;
 use crate::platform::provenance;
@@ -57,7 +61,7 @@ struct Header {
     commit: String,
 }
 
-#[derive(Serialize, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Line {
     #[serde(default)]
@@ -70,8 +74,8 @@ struct Line {
     file_size: Option<u64>,
     #[serde(default)]
     file_time: Option<String>,
-    #[serde(default)]
-    cells: Map<String, serde_json::Value>,
+    #[serde(default, deserialize_with = "read_cells")]
+    cells: Option<Cells>,
     #[serde(default)]
     process: String,
     #[serde(default)]
@@ -185,7 +189,7 @@ pub fn parse(line: &[u8]) -> Result<Entry, String> {
         Some(STUDY) => return Ok(Entry::Study(line.text)),
         Some(other) => return Err(format!("not a journal record: unknown kind {other:?}")),
     }
-    let cells = parse_cells(&line.cells)?;
+    let cells = line.cells.ok_or_else(|| "record without a status".to_owned())?;
     let stamp = |(size, modified)| Stamp { size, modified };
     Ok(Entry::Ended(Box::new(Record {
         job: job()?,
@@ -195,25 +199,45 @@ pub fn parse(line: &[u8]) -> Result<Entry, String> {
     })))
 }
 
-/// Reads the cells of an ended job.
-fn parse_cells(members: &Map<String, serde_json::Value>) -> Result<Cells, String> {
-    let status = ColumnId::Status.name();
-    let status = match members.get(status).and_then(serde_json::Value::as_str) {
-        Some(name) => Status::from_name(name).ok_or_else(|| format!("unknown status {name:?}"))?,
-        None => return Err("record without a status".to_owned()),
-    };
-    let mut cells = Cells::new(status);
-    for (name, value) in members {
-        let id = ColumnId::from_name(name).ok_or_else(|| format!("unknown column {name:?}"))?;
-        if id == ColumnId::Status {
-            continue;
+/// Reads the cells of an ended job, straight from the text: a large study has millions.
+fn read_cells<'de, D: Deserializer<'de>>(members: D) -> Result<Option<Cells>, D::Error> {
+    struct Members;
+    impl<'de> Visitor<'de> for Members {
+        type Value = Cells;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("the cells of a job")
         }
-        let cell_type = id.column().cell_type;
-        let value = from_json(cell_type, value)
-            .ok_or_else(|| format!("column {name:?} cannot hold {value}"))?;
-        cells.set(id, value);
+
+        fn visit_map<A: MapAccess<'de>>(self, mut members: A) -> Result<Cells, A::Error> {
+            let mut values = Vec::with_capacity(COLUMNS.len());
+            let mut status = None;
+            while let Some((name, value)) =
+                members.next_entry::<Cow<'_, str>, serde_json::Value>()?
+            {
+                let id = ColumnId::from_name(&name)
+                    .ok_or_else(|| A::Error::custom(format!("unknown column {name:?}")))?;
+                if id == ColumnId::Status {
+                    let name = value.as_str().unwrap_or_default();
+                    let known = Status::from_name(name);
+                    let unknown = || A::Error::custom(format!("unknown status {name:?}"));
+                    status = Some(known.ok_or_else(unknown)?);
+                    continue;
+                }
+                let value = from_json(id.column().cell_type, value).map_err(|value| {
+                    A::Error::custom(format!("column {name:?} cannot hold {value}"))
+                })?;
+                values.push((id, value));
+            }
+            let status = status.ok_or_else(|| A::Error::custom("record without a status"))?;
+            let mut cells = Cells::new(status);
+            for (id, value) in values {
+                cells.set(id, value);
+            }
+            Ok(cells)
+        }
     }
-    Ok(cells)
+    members.deserialize_map(Members).map(Some)
 }
 
 /// JSON of a value. NaN and infinities, which JSON does not have, become text.
@@ -228,15 +252,26 @@ fn to_json(value: &Value) -> serde_json::Value {
     }
 }
 
-fn from_json(cell_type: CellType, value: &serde_json::Value) -> Option<Value> {
-    match cell_type {
-        _ if value.is_null() => Some(Value::Null),
-        CellType::Bool => value.as_bool().map(Value::Bool),
-        CellType::Integer => value.as_i64().map(Value::Integer),
-        CellType::Number => match value.as_str() {
-            Some(text @ ("NaN" | "inf" | "-inf")) => text.parse().ok().map(Value::Number),
-            _ => value.as_f64().map(Value::Number),
-        },
-        CellType::Text => value.as_str().map(|text| Value::Text(text.to_owned())),
+/// The value of a cell of this type; the JSON itself where it is none.
+fn from_json(
+    cell_type: CellType,
+    value: serde_json::Value,
+) -> std::result::Result<Value, serde_json::Value> {
+    use serde_json::Value as Json;
+    let read = match (cell_type, &value) {
+        (_, Json::Null) => Some(Value::Null),
+        (CellType::Bool, Json::Bool(value)) => Some(Value::Bool(*value)),
+        (CellType::Integer, Json::Number(value)) => value.as_i64().map(Value::Integer),
+        (CellType::Number, Json::Number(value)) => value.as_f64().map(Value::Number),
+        (CellType::Number, Json::String(text)) if ["NaN", "inf", "-inf"].contains(&&**text) => {
+            text.parse().ok().map(Value::Number)
+        }
+        (CellType::Text, Json::String(_)) => None,
+        _ => return Err(value),
+    };
+    match (read, value) {
+        (Some(read), _) => Ok(read),
+        (None, Json::String(text)) => Ok(Value::Text(text)),
+        (None, other) => Err(other),
     }
 }

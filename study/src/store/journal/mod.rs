@@ -18,8 +18,11 @@
 //! `checksum` is that of [`billow_solver::platform::seal`]. A line that is not valid costs its own record
 //! only.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+
+use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
 use crate::job::JobId;
 use crate::job::point::Point;
@@ -90,11 +93,11 @@ impl std::fmt::Display for Fault {
 }
 
 /// The row of a point; `None` while its job has not ended.
-pub fn cells_of(point: &Point, records: &BTreeMap<JobId, Record>) -> Option<Cells> {
+pub fn cells_of<'a>(point: &Point, records: &'a BTreeMap<JobId, Record>) -> Option<Cow<'a, Cells>> {
     if let Some(infeasible) = &point.infeasible {
-        return Some(Cells::infeasible(infeasible));
+        return Some(Cow::Owned(Cells::infeasible(infeasible)));
     }
-    Some(records.get(&point.job.id)?.cells.clone())
+    Some(Cow::Borrowed(&records.get(&point.job.id)?.cells))
 }
 
 /// What the journals of a study hold.
@@ -170,8 +173,7 @@ pub fn read(files: &dyn Files, folder: &Path) -> Result<Journal> {
     let mut journal = Journal::default();
     for path in &paths(files, folder)? {
         let bytes = files.read(path).map_err(|error| disk_error(path, &error))?;
-        let lines = scan(path, &bytes)?;
-        for line in lines {
+        for line in scan(path, &bytes)? {
             match line.entry {
                 Ok(Some(entry)) => journal.take(entry),
                 Ok(None) => {}
@@ -214,21 +216,26 @@ fn scan<'a>(path: &Path, bytes: &'a [u8]) -> Result<Vec<ScannedLine<'a>>> {
         torn,
     };
     let complete = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
-    let mut lines = Vec::new();
-    for (number, bytes) in (1..).zip(bytes[..complete].split_inclusive(|byte| *byte == b'\n')) {
-        let entry = if number == 1 {
+    let all: Vec<&[u8]> = bytes[..complete].split_inclusive(|byte| *byte == b'\n').collect();
+    let entry = |number: usize, bytes: &[u8]| {
+        let read = if number == 1 {
             match line::check_header(bytes) {
                 Ok(()) => Ok(None),
                 Err(line::HeaderError::Version(problem)) => {
                     return Err(Error::Disk { path: path.to_owned(), problem });
                 }
-                Err(line::HeaderError::Invalid(problem)) => Err(fault(number, problem, false)),
+                Err(line::HeaderError::Invalid(problem)) => Err(problem),
             }
         } else {
-            line::parse(bytes).map(Some).map_err(|problem| fault(number, problem, false))
+            line::parse(bytes).map(Some)
         };
-        lines.push(ScannedLine { bytes, entry });
-    }
+        Ok(read.map_err(|problem| fault(number, problem, false)))
+    };
+    // A large study has 2 kB for each of its jobs.
+    let lines = all.par_iter().enumerate();
+    let mut lines: Vec<ScannedLine<'_>> = lines
+        .map(|(index, bytes)| Ok(ScannedLine { bytes, entry: entry(index + 1, bytes)? }))
+        .collect::<Result<_>>()?;
     if complete < bytes.len() {
         let problem = "torn (the program was stopped while it wrote the line)".to_owned();
         let entry = Err(fault(lines.len() + 1, problem, true));

@@ -3,6 +3,8 @@
 //! Rows of the model film have them. The error of a model without mesh is of another kind: it would make most
 //! comparisons of its rows ties, though its errors are alike from design to design. `billow advise` names it.
 
+use std::borrow::Cow;
+
 use billow_solver::output::measures::Verdict;
 use billow_solver::scene::ModelKind;
 
@@ -82,7 +84,7 @@ fn of_another_model(method: &Method) -> String {
 pub const NOT_DEPLOYED: &str = "not deployed: final_z_rim and final_volume have a mesh error only where the capsule is deployed";
 
 /// The columns of these rows.
-pub(super) fn columns(points: &[PointRow<'_>], rows: &[Cells]) -> Vec<Column> {
+pub(super) fn columns(points: &[PointRow<'_>], rows: &[Cow<'_, Cells>]) -> Vec<Column> {
     let all: Vec<RowErrors> =
         points.iter().zip(rows).map(|(point, cells)| RowErrors::of(point, cells)).collect();
     let number = |value: Option<f64>| value.map_or(Value::Null, Value::Number);
@@ -114,6 +116,8 @@ pub(super) fn columns(points: &[PointRow<'_>], rows: &[Cells]) -> Vec<Column> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use billow_solver::scene::{Scene, Stepping};
 
     use super::*;

@@ -5,6 +5,7 @@
 //! [`crate::accuracy::PROMISED`], then [`crate::job::row::SAME_JOB_AS`]. A parameter keeps its name when a later column has the same one; the
 //! later column is then called `<name>_resolved`.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use billow_solver::output::measures::Verdict;
@@ -92,9 +93,10 @@ impl Table {
         let parameters: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
 
         let row = |row: &PointRow<'_>| {
-            journal::cells_of(row.point, records).unwrap_or_else(|| Cells::new(Status::Pending))
+            journal::cells_of(row.point, records)
+                .unwrap_or_else(|| Cow::Owned(Cells::new(Status::Pending)))
         };
-        let rows: Vec<Cells> = points.iter().map(row).collect();
+        let rows: Vec<Cow<'_, Cells>> = points.iter().map(row).collect();
         for column in COLUMNS {
             let shadowed = parameters.iter().any(|name| name == column.name);
             columns.push(Column {

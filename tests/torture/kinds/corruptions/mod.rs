@@ -16,15 +16,12 @@ use crate::harness::studies;
 use crate::harness::trial::{Fault, Kind, Trial};
 
 mod advice;
-mod histories;
-mod journals;
+mod damages;
 mod readers;
 mod special;
-mod stored;
-mod target;
 
+use damages::{Damage, Expect, Target};
 use readers::Answers;
-use target::{Damage, Expect, Target};
 
 /// The kind.
 pub struct Corruptions {
@@ -54,11 +51,7 @@ pub fn prepare(place: &Place) -> Result<Corruptions, String> {
     // The film jobs are the last ones.
     let film = jobs.last().ok_or("no job has a history")?;
     let answers = Answers::of(&template, film)?;
-    let mut damages = journals::all();
-    damages.extend(stored::references());
-    damages.extend(stored::study_json());
-    damages.extend(histories::all());
-    damages.extend(stored::others());
+    let damages = damages::all();
     let trials = damages.iter().enumerate();
     let numbers = trials.flat_map(|(index, damage)| vec![index; damage.trials]).collect();
     let other = other.results();
@@ -79,7 +72,7 @@ impl Kind for Corruptions {
             return special::trial(self, number - self.numbers.len(), place);
         };
         let damage = &self.damages[*index];
-        let mut trial = Trial::new(damage.name);
+        let mut trial = Trial::new(damage.name.clone());
         let damaged = self.copy(place, "damaged");
         if (damage.apply)(&self.target(&damaged), random).is_none() {
             trial.skipped = Some(format!("not possible here: {}", damage.name));
@@ -131,11 +124,11 @@ impl Corruptions {
         doctor.check_end(trial, "doctor");
         trial.detected = doctor.code == Some(1);
         match (expect, doctor.code) {
-            (_, Some(1)) | (Expect::Harmless(_), Some(0)) => {}
+            (_, Some(1)) | (Expect::Harmless, Some(0)) => {}
             (_, Some(0)) => trial.fault(Fault::SilentlyWrong, "doctor calls the folder sound"),
             _ => trial.fault(Fault::WrongMessage, format!("doctor: {}", doctor.said())),
         }
-        if expect == Expect::Newer {
+        if expect == Expect::OtherVersion {
             return;
         }
         advice::check(trial, advised, &doctor.stdout);
@@ -148,7 +141,7 @@ impl Corruptions {
     /// `run` refuses, or gives the right table.
     fn check_run(&self, trial: &mut Trial, place: &Place, expect: Expect) {
         let finish = studies::run(place);
-        if finish.succeeded() && expect != Expect::Newer {
+        if finish.succeeded() && expect != Expect::OtherVersion {
             readers::check_table(trial, place, &self.truth.rows, "after run");
             if check::rows(place).is_ok_and(|rows| rows != self.truth.rows) {
                 trial.fault(Fault::Lost, "after run: the table is not the original one");
@@ -163,7 +156,7 @@ impl Corruptions {
     /// `doctor --repair` and `run` bring back everything.
     fn check_repair(&self, trial: &mut Trial, place: &Place, expect: Expect) {
         let repair = program::run(place, &["doctor", "--repair", "results/s"]);
-        if expect == Expect::Newer {
+        if expect == Expect::OtherVersion {
             return repair.check_refusal(trial, "doctor --repair", &[1, 2]);
         }
         repair.check_refusal(trial, "doctor --repair", &[0, 1]);

@@ -14,9 +14,9 @@ use crate::harness::trial::{Fault, Trial};
 const READERS: [&str; 11] = [
     "table results/s --json",
     "table results/s --json --where mass_flow_rate>0",
-    "show JOB results/s --json",
-    "show JOB results/s --history --format csv",
-    "why JOB results/s --json",
+    "job JOB results/s --all --json",
+    "job JOB results/s --history --format csv",
+    "job JOB results/s --json",
     "status results/s --json",
     "compare results/s --by mass_flow_rate --base 0.002 --json",
     "chart results/s --history z_rim --jobs JOB --out out.svg",

@@ -48,7 +48,7 @@ fn lock_is_a_link(kind: &Corruptions, place: &Place) -> Trial {
         trial.fault(Fault::Lost, "run created the file that the lock links to");
     }
     let _ = fs::remove_file(&lock);
-    kind.check_repair(&mut trial, &place, super::Expect::Harmless(""));
+    kind.check_repair(&mut trial, &place, super::Expect::Harmless);
     trial
 }
 
@@ -62,7 +62,7 @@ fn lock_is_a_folder(kind: &Corruptions, place: &Place) -> Trial {
     program::run(&place, &["table", "results/s"]).check_refusal(&mut trial, "table", &[0, 2]);
     program::run(&place, &["doctor", "results/s"]).check_refusal(&mut trial, "doctor", &[0, 1]);
     fs::remove_dir(&lock).expect("the folder");
-    kind.check_repair(&mut trial, &place, super::Expect::Harmless(""));
+    kind.check_repair(&mut trial, &place, super::Expect::Harmless);
     trial
 }
 

@@ -7,7 +7,7 @@ use crate::store::journal::{Fault, Journal, Writer};
 use crate::store::results::Results;
 
 /// The repaired journal of a folder.
-pub struct Alone<'a> {
+pub struct Exclusive<'a> {
     /// What it holds, without faults.
     pub journal: Journal,
     /// Appends to it.
@@ -22,7 +22,7 @@ pub struct Alone<'a> {
 ///
 /// # Errors
 /// [`crate::platform::error::Error::Disk`], also for a folder of another study.
-pub fn open<'a>(results: &Results<'a>, study: Option<(&str, &Json)>) -> Result<Alone<'a>> {
+pub fn open<'a>(results: &Results<'a>, study: Option<(&str, &Json)>) -> Result<Exclusive<'a>> {
     results.remove_temporary_files()?;
     let mut journal = results.journal()?;
     let text = match study {
@@ -40,5 +40,5 @@ pub fn open<'a>(results: &Results<'a>, study: Option<(&str, &Json)>) -> Result<A
         writer.study(&text)?;
         journal.study = Some(text);
     }
-    Ok(Alone { journal, writer, faults })
+    Ok(Exclusive { journal, writer, faults })
 }
