@@ -200,7 +200,7 @@ fn print_advice(study: &Study, table: &MeshErrors, choices: &[Choice], tolerance
     if let Some(choice) = recommended.filter(|choice| choice.method.meshes.is_empty()) {
         let model = choice.method.name();
         eprintln!(
-            "limits: {model} has no contact of film and cannot lock: it answers how fast, not whether"
+            "limits: {model} has no contact of film and cannot lock: it estimates times and speeds only"
         );
     }
     eprintln!(

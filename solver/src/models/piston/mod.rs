@@ -22,7 +22,7 @@
 //! film model on the paper's capsule (5 g/s from time 0), times are up to 25 % too early, the peak speed
 //! is 65-75 % too high and the peak kinetic energy 40-60 % too high: a single mass spends no energy on
 //! twist, radial motion and the loss in opening folds. Read both as upper bounds. A piston deploys
-//! whenever it has enough gas, so the model answers how fast, not whether.
+//! whenever it has enough gas, so its verdict says nothing of locking.
 
 use super::{Cost, ModelEntry};
 use crate::geometry::fold::FoldPattern;

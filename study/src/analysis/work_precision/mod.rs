@@ -100,7 +100,7 @@ impl Ending {
         }
     }
 
-    /// Of the endings of a configuration's runs the one that counts is the least.
+    /// How the runs of a configuration ended: the least of their outcomes.
     fn rank(self) -> u8 {
         match self {
             Self::Trusted => 0,
