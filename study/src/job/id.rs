@@ -5,7 +5,7 @@
 //! ```
 
 use std::cell::RefCell;
-use std::fmt::{self, Write as _};
+use std::fmt;
 use std::io::{self, Write};
 
 use billow_solver::PHYSICS_VERSION;

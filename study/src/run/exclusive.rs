@@ -16,7 +16,7 @@ pub struct Exclusive<'a> {
     pub faults: Vec<Fault>,
 }
 
-/// Clears a folder whose lock this process holds alone: temporary files, claims of dead runs, invalid journal lines,
+/// Clears a folder whose lock this process holds alone: temporary files, invalid journal lines,
 /// damaged references. Jobs that ran in a process that died are noted in the journal. With a study, its name and its
 /// resolved text, study.json and the journal are those of this study.
 ///

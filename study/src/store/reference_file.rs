@@ -77,18 +77,7 @@ fn encode(id: &JobId, states: &[LadderState]) -> io::Result<String> {
 fn read(id: &JobId, bytes: &[u8]) -> Result<Vec<LadderState>, Unread> {
     let damaged = |error: &dyn std::fmt::Display| Unread::Damaged(error.to_string());
     let text = std::str::from_utf8(bytes).map_err(|error| damaged(&error))?;
-    let object = match seal::open(text) {
-        Ok(object) => object,
-        // Older versions have another checksum.
-        Err(error) => {
-            return Err(match serde_json::from_str::<Head>(text) {
-                Ok(head) if head.version < VERSION && error == seal::SealError::Missing => {
-                    Unread::OtherVersion
-                }
-                _ => damaged(&error),
-            });
-        }
-    };
+    let object = seal::open(text).map_err(|error| damaged(&error))?;
     let head: Head = serde_json::from_str(&object).map_err(|error| damaged(&error))?;
     if (head.version, head.physics_version) != (VERSION, PHYSICS_VERSION) {
         return Err(Unread::OtherVersion);
@@ -196,7 +185,7 @@ mod tests {
         }
         let old =
             "{\"format\":\"billow-reference\",\"version\":2,\"physics_version\":6,\"states\":[]}";
-        assert_eq!(read(&id, old.as_bytes()), Err(Unread::OtherVersion));
+        assert_eq!(read(&id, seal::seal(old).as_bytes()), Err(Unread::OtherVersion));
         assert!(results.references().unread.is_empty());
         let damaged = path.with_file_name(format!("{other}.json"));
         files::write_atomic(&Disk, &damaged, &bytes).unwrap();

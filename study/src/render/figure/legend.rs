@@ -1,7 +1,8 @@
 //! The legend, below the plots, so that it never covers data.
 
 use super::map::Cell;
-use super::plot::panel::{self, Frame};
+use super::plot::frame::Frame;
+use super::plot::panel;
 use super::plot::{Direction, Line};
 use super::scale::{Scale, Spread};
 use super::style::{self, Fill, MEDIUM, SMALL, Series};

@@ -372,7 +372,7 @@ fn another_study_a_newer_one_and_a_second_command_are_refused() {
     other("\"test\"", "\"other\"").unwrap();
     assert!(refused().contains("holds results of the study \"other\", not of \"test\""));
     other("\"version\": 1", "\"version\": 2").unwrap();
-    assert!(refused().contains("version 2, this program reads up to 1"));
+    assert!(refused().contains("version 2, this program reads version 1"));
     fs::write(&path, valid).unwrap();
     let lock = Results::new(&Disk, folder.path()).lock().unwrap();
     assert!(refused().contains("another billow command is running this study"));

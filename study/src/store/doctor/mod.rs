@@ -304,8 +304,8 @@ fn check_table(stored: &Stored<'_>, health: &mut Health) {
         Err(_) if !path.exists() => return note_missing_table(&stored.results, health),
         Err(Error::Disk { path, problem }) => {
             let problem = problem.split('\n').next().unwrap_or_default();
-            let newer = problem.contains("this program reads up to");
-            let next = if newer { "use the newer billow that wrote it" } else { write_again };
+            let other = problem.contains("this program reads version");
+            let next = if other { "use the billow that wrote it" } else { write_again };
             return health.fault(&path, problem, next);
         }
         Err(other) => return health.error(&path, &other),

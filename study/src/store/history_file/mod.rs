@@ -85,10 +85,10 @@ fn open(path: &Path) -> Result<File> {
         return Err(broken("an HDF5 file, but not a billow history".to_owned()));
     }
     let version: u32 = read_number(&file, "version").map_err(damaged)?;
-    if version > VERSION {
+    if version != VERSION {
         return Err(broken(format!(
-            "history file of version {version}, this program reads up to {VERSION}\n  next: use the \
-             newer billow that wrote it"
+            "history file of version {version}, this program reads version {VERSION}\n  next: use the \
+             billow that wrote it"
         )));
     }
     let complete: u8 = read_number(&file, "complete").map_err(damaged)?;

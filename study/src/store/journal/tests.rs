@@ -1,4 +1,4 @@
-//! Journals: what is read back, what is refused, what old versions hold.
+//! Journals: what is read back, what is refused.
 
 #![expect(clippy::disallowed_methods, reason = "tests read and write files directly")]
 

@@ -1,5 +1,5 @@
 //! study.json: which study a results folder belongs to. It is the resolved study, a study file, with a
-//! checksum ([`billow_solver::platform::seal`]). Files of older versions have none.
+//! checksum ([`billow_solver::platform::seal`]).
 //!
 //! The journal holds the text too, so that a damaged file can be restored.
 
@@ -63,7 +63,7 @@ impl Results<'_> {
     /// Name of the study that the folder belongs to; `None` without study.json.
     ///
     /// # Errors
-    /// [`Error::Disk`] when study.json cannot be read, is not valid, or is of a newer version.
+    /// [`Error::Disk`] when study.json cannot be read, is not valid, or is of another version.
     pub fn owner(&self) -> Result<Option<String>> {
         Ok(self.read_owner()?.map(|owner| owner.name))
     }
@@ -100,7 +100,7 @@ impl Results<'_> {
     /// The state of study.json.
     ///
     /// # Errors
-    /// [`Error::Disk`] when it cannot be read, belongs to another program, or is of a newer version.
+    /// [`Error::Disk`] when it cannot be read, belongs to another program, or is of another version.
     fn study_state(&self) -> Result<State> {
         let path = self.study_path();
         let bytes = match self.files().read(&path) {
@@ -111,7 +111,8 @@ impl Results<'_> {
         let Ok(text) = String::from_utf8(bytes) else {
             return Ok(State::Damaged("it is not UTF-8 text".to_owned()));
         };
-        if seal::open(&text) == Err(seal::SealError::Changed) {
+        let sealed = seal::open(&text);
+        if sealed == Err(seal::SealError::Changed) {
             return Ok(State::Damaged(seal::SealError::Changed.to_string()));
         }
         let owner = match serde_json::from_str::<Owner>(&text) {
@@ -129,7 +130,10 @@ impl Results<'_> {
                 owner.version
             )));
         }
-        Ok(State::Valid(owner))
+        Ok(match sealed {
+            Ok(_) => State::Valid(owner),
+            Err(error) => State::Damaged(error.to_string()),
+        })
     }
 
     fn refused(&self, problem: &str) -> Error {
@@ -143,7 +147,7 @@ impl Results<'_> {
     /// the folder `damaged`. `study` is the resolved study, an object; `journal` is that of the folder.
     ///
     /// # Errors
-    /// [`Error::Disk`] when the folder belongs to another study, or to a newer program.
+    /// [`Error::Disk`] when the folder belongs to another study, or to a program with another version of the file.
     pub fn write_study(&self, name: &str, study: &Json, journal: &Journal) -> Result<String> {
         let path = self.study_path();
         let owner = match self.study_state()? {

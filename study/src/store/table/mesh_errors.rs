@@ -116,7 +116,6 @@ pub(super) fn columns(points: &[PointRow<'_>], rows: &[Cow<'_, Cells>]) -> Vec<C
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
 
     use billow_solver::scene::{Scene, Stepping};
 

@@ -4,9 +4,7 @@
 //! Columns are written one after the other on the calling thread. So the bytes do not depend on the
 //! machine, and polars starts no threads.
 //!
-//! The metadata have a checksum of names and cells too. Tables of older versions have none.
-//!
-//! Tables with old names of columns and statuses are read with the current names.
+//! The metadata have a checksum of names and cells too.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -29,7 +27,7 @@ use crate::platform::error::{Error, Result};
 const KEY: &str = "billow";
 /// Name of the format.
 const FORMAT: &str = "billow-table";
-/// Version of the format that this program writes, and the newest that it reads.
+/// Version of the format. Others are refused.
 const VERSION: u64 = 1;
 
 #[derive(Serialize, Deserialize)]
@@ -37,9 +35,7 @@ struct Metadata {
     format: String,
     version: u64,
     /// [`checksum`] of the table.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    checksum: Option<String>,
-    #[serde(default)]
+    checksum: String,
     columns: Vec<ColumnMetadata>,
 }
 
@@ -64,7 +60,7 @@ pub fn encode(table: &Table) -> std::result::Result<Vec<u8>, String> {
             meaning: column.meaning.clone(),
         })
         .collect();
-    let checksum = Some(checksum(table));
+    let checksum = checksum(table);
     let metadata = Metadata { format: FORMAT.to_owned(), version: VERSION, checksum, columns };
     let metadata = serde_json::to_string(&metadata).map_err(|error| error.to_string())?;
     write(table, metadata).map_err(|error| error.to_string())
@@ -140,11 +136,6 @@ fn to_polars(column: &Column) -> PolarsColumn {
     }
 }
 
-/// The checksum that a file says its table has; `None` for a file that is no table with one.
-pub fn stored_checksum(bytes: &[u8]) -> Option<String> {
-    metadata(&mut ParquetReader::new(Cursor::new(bytes))).ok()?.checksum
-}
-
 /// The metadata of a table's file.
 ///
 /// # Errors
@@ -170,7 +161,7 @@ fn metadata(reader: &mut ParquetReader<Cursor<&[u8]>>) -> std::result::Result<Me
 /// Reads a table from the bytes of its file; `path` names it in errors.
 ///
 /// # Errors
-/// [`Error::Disk`] for bytes that are damaged, not a billow table, or of a newer version.
+/// [`Error::Disk`] for bytes that are damaged, not a billow table, or of another version.
 pub fn decode(path: &Path, bytes: &[u8]) -> Result<Table> {
     let broken = |problem: String| Error::Disk {
         path: path.to_owned(),
@@ -200,7 +191,7 @@ pub fn decode(path: &Path, bytes: &[u8]) -> Result<Table> {
         );
     }
     let table = Table { columns };
-    if metadata.checksum.is_some_and(|stored| stored != checksum(&table)) {
+    if metadata.checksum != checksum(&table) {
         return Err(broken("it does not have the contents of its checksum".to_owned()));
     }
     Ok(table)

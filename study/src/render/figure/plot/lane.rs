@@ -1,6 +1,6 @@
 //! The lane below a plot: one letter per job without a value.
 
-use super::panel::Frame;
+use super::frame::Frame;
 use crate::render::figure::scale::Scale;
 use crate::render::figure::style::{AXIS, EMPTY, SMALL, Series};
 use crate::render::page::{Anchor, Letters, Page};

@@ -1,6 +1,6 @@
 //! What belongs to one series of a plot, and how it is drawn: bands behind, the line, then points.
 
-use super::panel::Frame;
+use super::frame::Frame;
 use crate::render::figure::style::{self, Fill, Series};
 use crate::render::page::{Page, Position, Stroke};
 

@@ -10,6 +10,7 @@ use super::{INNER, MIN_TEXT_GAP, Sheet, draw_names, widest};
 use crate::render::font;
 use crate::render::page::{Anchor, Letters, Page, cut, wrapped, wrapped_at_commas};
 
+pub(super) mod frame;
 mod lane;
 mod line;
 pub(super) mod panel;
@@ -18,7 +19,7 @@ mod words;
 pub use self::lane::Mark;
 pub use self::line::{Direction, Line};
 
-use self::panel::Frame;
+use self::frame::Frame;
 
 /// A figure of plots.
 #[derive(Debug, Clone, PartialEq)]

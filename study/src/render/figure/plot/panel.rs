@@ -1,50 +1,13 @@
 //! One panel of a plot: grid, limits, lines, markers, lane, message.
 
+use super::frame::Frame;
 use super::words::Words;
 use super::{LABEL_LINE, Panel, Rule, TITLE_LINE, lane, y_ticks};
 use crate::render::figure::plot::Direction;
-use crate::render::figure::scale::{Scale, Spread};
+use crate::render::figure::scale::Spread;
 use crate::render::figure::style::{AXIS, GRID, MARGIN, MEDIUM, SMALL};
-use crate::render::figure::ticks::Tick;
 use crate::render::font;
 use crate::render::page::{Anchor, Letters, Page, Position, Stroke, cut, wrapped};
-
-/// Where a panel lies on the page, mm, and its scales.
-#[derive(Default)]
-pub struct Frame {
-    /// Left end.
-    pub left: f64,
-    /// Upper end.
-    pub top: f64,
-    /// Width.
-    pub width: f64,
-    /// Height.
-    pub height: f64,
-    /// From x to the page.
-    pub x: Scale,
-    /// From y to the page.
-    pub y: Scale,
-    /// Ticks of the x axis.
-    pub x_ticks: Vec<Tick>,
-    /// Number of rows of letters in the lane below.
-    pub lane_rows: usize,
-    /// Whether the panel is the first one of its row and has the y axis.
-    pub first: bool,
-}
-
-impl Frame {
-    pub(super) fn right(&self) -> f64 {
-        self.left + self.width
-    }
-
-    pub(super) fn bottom(&self) -> f64 {
-        self.top + self.height
-    }
-
-    pub(super) fn contains(&self, [x, y]: Position) -> bool {
-        (self.left..=self.right()).contains(&x) && (self.top..=self.bottom()).contains(&y)
-    }
-}
 
 /// The line of zero in a plot of both signs.
 const ZERO: Stroke = Stroke::solid("#888888", 0.25);

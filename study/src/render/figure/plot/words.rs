@@ -1,6 +1,6 @@
 //! Places of texts inside a plot: no text covers another one, and as little data as possible is covered.
 
-use super::panel::Frame;
+use super::frame::Frame;
 use super::{Line, Panel};
 use crate::render::figure::style::SMALL;
 use crate::render::font;
