@@ -4,9 +4,10 @@
 use super::contact_audit;
 use super::interface::{StepAudit, StepMotion};
 use super::motion_audit::MotionAudit;
-use super::passage_audit::PassageAudit;
 use super::pressure_audit;
+use crate::collision::monitor::TunnellingMonitor;
 use crate::geometry::field::Field;
+use crate::geometry::topology::Topology;
 use crate::mechanics::forces::membrane::NodeForces;
 use crate::output::outcome::{AuditKind, Failure};
 use crate::scene::monitor_settings::MonitorSettings;
@@ -16,8 +17,10 @@ use crate::system::{FilmState, FilmSystem};
 #[derive(Debug, Clone)]
 pub struct FilmAudit {
     motion: MotionAudit,
-    /// `None` without contact or without a monitor.
-    passages: Option<PassageAudit>,
+    /// Looks for passages of film through film; `None` without contact or without a monitor.
+    pub monitor: Option<TunnellingMonitor>,
+    /// Time of the last recorded state, s.
+    time: f64,
     /// Scratch memory: a vector for each node.
     moves: Field,
 }
@@ -30,20 +33,18 @@ impl FilmAudit {
         state: &FilmState,
         steps: u64,
     ) -> Self {
-        let passages =
-            monitor.and_then(|settings| PassageAudit::start(settings, system, state, steps));
-        let moves = Field::zeros(state.positions.len());
-        Self { motion: MotionAudit::start(system), passages, moves }
+        let (positions, set) = (&state.positions, system.instruction_set);
+        let start = |(settings, topology): (MonitorSettings, _)| {
+            TunnellingMonitor::new(settings, topology, positions, steps, set)
+        };
+        let monitor = monitor.zip(topology(system)).map(start);
+        let moves = Field::zeros(positions.len());
+        Self { motion: MotionAudit::start(system), monitor, time: state.time, moves }
     }
 
-    /// The audit of passages.
-    pub fn passages(&self) -> Option<&PassageAudit> {
-        self.passages.as_ref()
-    }
-
-    /// Whether the audit of passages has tested every recorded step.
+    /// Whether every recorded step is tested for passages.
     pub fn is_complete(&self) -> bool {
-        self.passages.as_ref().is_none_or(PassageAudit::is_complete)
+        self.monitor.as_ref().is_none_or(TunnellingMonitor::is_block_start)
     }
 
     /// Looks at a state at the end of an interval, with its forces.
@@ -61,9 +62,22 @@ impl FilmAudit {
     }
 }
 
+/// The mesh of the film in contact.
+fn topology(system: &FilmSystem) -> Option<&Topology> {
+    system.contact.as_ref().map(|model| &model.mesh.topology)
+}
+
 /// The failure of the audit of motion at a time (s).
 fn elsewhere(time: f64) -> Failure {
     Failure::new(AuditKind::Motion, time, "nodes are not where their velocities lead")
+}
+
+/// The failure of a run up to a time (s) in which film passed through film.
+fn check_passages(monitor: &TunnellingMonitor, time: f64) -> Result<(), Failure> {
+    let Some((passage, position)) = monitor.first_passage else { return Ok(()) };
+    let [x, y, z] = [position.x, position.y, position.z];
+    let place = format!("{passage}, near ({x:.4}, {y:.4}, {z:.4}) m");
+    Err(Failure::new(AuditKind::Passages, time, place))
 }
 
 impl StepAudit for FilmAudit {
@@ -72,18 +86,27 @@ impl StepAudit for FilmAudit {
     }
 
     fn record(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
-        self.passages.as_mut().map_or(Ok(()), |audit| audit.record(system, state))
+        // A failed step is not accepted: the run ended at the time before it.
+        let before = core::mem::replace(&mut self.time, state.time);
+        let Some((monitor, topology)) = self.monitor.as_mut().zip(topology(system)) else {
+            return Ok(());
+        };
+        monitor.record_step(topology, &state.positions);
+        check_passages(monitor, before)
     }
 
     fn look(&mut self, system: &FilmSystem, state: &FilmState) {
-        if let Some(audit) = &mut self.passages {
-            audit.look(system, state);
+        if let Some((monitor, topology)) = self.monitor.as_mut().zip(topology(system)) {
+            monitor.intersection_counter.update(topology, &state.positions);
         }
     }
 
     fn complete(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
-        if let Some(audit) = &mut self.passages {
-            audit.complete(system, state)?;
+        self.time = state.time;
+        if let Some((monitor, topology)) = self.monitor.as_mut().zip(topology(system)) {
+            monitor.test_block(topology);
+            monitor.intersection_counter.update(topology, &state.positions);
+            check_passages(monitor, state.time)?;
         }
         if !self.motion.keeps_masses(system) {
             let place = "the masses of the nodes are not those of the start";

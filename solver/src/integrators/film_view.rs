@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::energy_accounting::EnergyAccounting;
 use super::film_audit::FilmAudit;
 use super::interface::Integrator;
-use super::passage_audit::PassageAudit;
+use crate::collision::monitor::TunnellingMonitor;
 use crate::mechanics::forces::membrane::{NORMAL_TO_GRADIENT, NodeForces, stress_on_fraction};
 use crate::mechanics::supports::RigidPlane;
 use crate::output::ledger::{GasBalance, Ledger};
@@ -109,16 +109,16 @@ impl<'a> FilmView<'a> {
 
     /// Passages of film through film so far; `None` without an audit.
     pub fn passages(&self) -> Option<u64> {
-        self.audit.passages().map(PassageAudit::passages)
+        self.audit.monitor.as_ref().map(|monitor| monitor.passages)
     }
 
     /// Number of steps of the run that are tested for passages; `None` without an audit.
     pub fn tested_steps(&self) -> Option<u64> {
-        self.audit.passages().map(PassageAudit::tested_steps)
+        self.audit.monitor.as_ref().map(TunnellingMonitor::tested_steps)
     }
 
     /// Intersections of the mesh at the end of the last interval; `None` without an audit.
     pub fn intersections(&self) -> Option<u64> {
-        self.audit.passages().map(PassageAudit::intersections)
+        self.audit.monitor.as_ref().map(|monitor| monitor.intersection_counter.count)
     }
 }

@@ -97,26 +97,6 @@ pub trait StepAudit: fmt::Debug {
     fn complete(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure>;
 }
 
-/// Checks nothing.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct NoAudit;
-
-impl StepAudit for NoAudit {
-    fn moved(&mut self, _: StepMotion<'_>) -> Result<(), Failure> {
-        Ok(())
-    }
-
-    fn record(&mut self, _: &FilmSystem, _: &FilmState) -> Result<(), Failure> {
-        Ok(())
-    }
-
-    fn look(&mut self, _: &FilmSystem, _: &FilmState) {}
-
-    fn complete(&mut self, _: &FilmSystem, _: &FilmState) -> Result<(), Failure> {
-        Ok(())
-    }
-}
-
 /// Where [`Integrator::advance`] ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Advance {

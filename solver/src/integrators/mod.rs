@@ -21,15 +21,12 @@ pub mod hybrid;
 pub mod implicit;
 pub mod interface;
 mod motion_audit;
-pub mod passage_audit;
 mod pressure_audit;
 mod virtual_displacement;
 
 pub use film_simulation::{FilmSimulation, SimulationSettings, StoredFilm};
 pub use film_view::FilmView;
-pub use interface::{
-    Advance, Budget, Computed, Integrator, Interval, NoAudit, StepAudit, StepMotion,
-};
+pub use interface::{Advance, Budget, Computed, Integrator, Interval, StepAudit, StepMotion};
 
 /// Everything in which integrators of film differ, but for the trait. To add one: a variant of
 /// [`IntegratorKind`], a folder, and an arm of [`entry`].

@@ -145,17 +145,6 @@ impl FilmSystem {
         Some(step)
     }
 
-    /// What an expansion to a volume (m³) makes of the gas while none enters, leaves or is heated; `None` under a
-    /// fixed overpressure.
-    pub fn expansion(&self, state: &FilmState, volume: f64) -> Option<GasStep> {
-        let PressureLoad::Gas(gas) = self.pressure_load else { return None };
-        let mut step = gas.expansion(state.gas, state.volume, volume);
-        if let Some(fault) = self.fault {
-            step.inject_fault(&gas, volume, 0.0, fault);
-        }
-        Some(step)
-    }
-
     /// First moment of mass Σ m x of a state, kg m.
     pub fn first_moment(&self, state: &FilmState) -> Vector3<f64> {
         let nodes = self.model.mass.iter().zip(state.positions.iter());

@@ -2,7 +2,6 @@
 
 use billow_solver::geometry::field::Field;
 use billow_solver::integrators::explicit::StoredExplicit;
-use billow_solver::integrators::hybrid::StoredActive;
 use billow_solver::integrators::implicit::PendingStep;
 use billow_solver::integrators::{StoredFilm, StoredIntegrator};
 use billow_solver::system::{FilmState, FilmSystem};
@@ -12,22 +11,16 @@ use nalgebra::Vector3;
 pub fn ahead(stored: &mut StoredIntegrator) -> Option<&mut PendingStep> {
     match stored {
         StoredIntegrator::Implicit(stored) => stored.motion.ahead.as_deref_mut(),
-        StoredIntegrator::Hybrid(stored) => match &mut stored.active {
-            StoredActive::Implicit(stored) => stored.motion.ahead.as_deref_mut(),
-            StoredActive::Explicit(_) => None,
-        },
+        StoredIntegrator::Hybrid(stored) => ahead(&mut stored.active),
         StoredIntegrator::Explicit(_) => None,
     }
 }
 
 /// What central differences keep, if they are at work.
-fn explicit(stored: &mut StoredFilm) -> Option<&mut StoredExplicit> {
-    match &mut stored.integrator {
+fn explicit(stored: &mut StoredIntegrator) -> Option<&mut StoredExplicit> {
+    match stored {
         StoredIntegrator::Explicit(stored) => Some(stored),
-        StoredIntegrator::Hybrid(stored) => match &mut stored.active {
-            StoredActive::Explicit(stored) => Some(stored),
-            StoredActive::Implicit(_) => None,
-        },
+        StoredIntegrator::Hybrid(stored) => explicit(&mut stored.active),
         StoredIntegrator::Implicit(_) => None,
     }
 }
@@ -42,7 +35,7 @@ pub fn change_state(stored: &mut StoredFilm, change: impl Fn(&mut FilmState)) {
 
 /// Changes the velocities with which the next step begins.
 pub fn change_velocities(stored: &mut StoredFilm, change: impl Fn(&mut Field)) {
-    if let Some(explicit) = explicit(stored) {
+    if let Some(explicit) = explicit(&mut stored.integrator) {
         change(&mut explicit.motion.velocities);
     }
     change_state(stored, |state| change(&mut state.velocities));
@@ -50,7 +43,7 @@ pub fn change_velocities(stored: &mut StoredFilm, change: impl Fn(&mut Field)) {
 
 /// Forgets the numerical stress of every element, and the strain and stress that it is computed from.
 pub fn forget_numerical_stress(stored: &mut StoredFilm) {
-    if let Some(explicit) = explicit(stored) {
+    if let Some(explicit) = explicit(&mut stored.integrator) {
         explicit.histories.fill_with(Default::default);
     }
 }

@@ -80,25 +80,11 @@ impl KDops {
     /// Fits the k-DOPs to positions (m).
     pub fn fit(&mut self, hierarchy: &Hierarchy, positions: &Field) {
         self.tree.resize(hierarchy.end(), KDop::EMPTY);
-        self.rounding_error = 0.0;
-        self.update(hierarchy, positions, |_| KDop::EMPTY);
-    }
-
-    /// Enlarges the k-DOPs so that they also contain these positions (m).
-    pub fn extend(&mut self, hierarchy: &Hierarchy, positions: &Field) {
-        self.update(hierarchy, positions, |kdop| kdop);
-    }
-
-    /// Sets the k-DOP of each leaf to the union of `initial` of its old one and its nodes at these
-    /// positions (m), then updates the rest of the tree from the leaves to the root.
-    #[inline]
-    fn update(&mut self, hierarchy: &Hierarchy, positions: &Field, initial: impl Fn(KDop) -> KDop) {
         self.update_points(positions);
         for leaf in hierarchy.leaves() {
             let corners = hierarchy.corners(leaf).iter();
-            let kdop = initial(self.tree[leaf]);
             self.tree[leaf] =
-                corners.fold(kdop, |union, node| union.union(&self.points[*node as usize]));
+                corners.fold(KDop::EMPTY, |union, node| union.union(&self.points[*node as usize]));
         }
         for parent in (1..hierarchy.first_leaf()).rev() {
             self.tree[parent] = self.tree[2 * parent].union(&self.tree[2 * parent + 1]);
@@ -122,7 +108,7 @@ impl KDops {
                 largest = if size > largest { size } else { largest };
             }
         }
-        self.rounding_error = self.rounding_error.max(MAX_ROUNDING_ERROR * f32::EPSILON * largest);
+        self.rounding_error = MAX_ROUNDING_ERROR * f32::EPSILON * largest;
     }
 
     /// Lower bound of the distance between the points of two tree nodes, m. It is zero or negative

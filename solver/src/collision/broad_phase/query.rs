@@ -7,23 +7,26 @@
 //! Each node and each edge belongs to one leaf of the hierarchy only, so each pair of primitives
 //! belongs to exactly one pair of leaves.
 
+use serde::{Deserialize, Serialize};
+
 use super::hierarchy::{Hierarchy, NO_INDEX};
 
-/// The kind of a candidate: a pair of primitives that share no node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum CandidateKind {
+/// The kind of a pair of primitives that share no node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PairKind {
     /// A node and an element.
     NodeElement,
     /// Two edges, the lower number first.
     EdgeEdge,
 }
 
-impl CandidateKind {
-    /// All kinds.
+impl PairKind {
+    /// Both kinds, in the order of candidates and contacts.
     pub const ALL: [Self; 2] = [Self::NodeElement, Self::EdgeEdge];
 }
 
-/// Candidates, one list per candidate kind, in the order of [`CandidateKind::ALL`].
+/// Candidates, one list for each kind, in the order of [`PairKind::ALL`].
 pub(super) type Candidates = [Vec<[u32; 2]>; 2];
 
 /// Adds the candidates of two leaves to `candidates`.

@@ -17,7 +17,7 @@ use super::clusters::MotionClusters;
 use super::collision_mesh::CollisionMesh;
 use super::hierarchy::push_child_pairs;
 use super::kdop::KDops;
-use super::query::{CandidateKind, Candidates, push_candidates};
+use super::query::{Candidates, PairKind, push_candidates};
 use super::queue::PairQueue;
 use crate::geometry::field::Field;
 use crate::platform::simd::InstructionSet;
@@ -148,8 +148,8 @@ impl CandidateScheduler {
         mesh: &CollisionMesh,
         positions: &Field,
         query: ProximityQuery,
-        mut distances: impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>),
-        mut take: impl FnMut(CandidateKind, [u32; 2], f64),
+        mut distances: impl FnMut(PairKind, &[[u32; 2]], &mut Vec<f64>),
+        mut take: impl FnMut(PairKind, [u32; 2], f64),
     ) {
         let ProximityQuery { max_displacement, radius, bound_factor } = query;
         let reach = 2.0 * max_displacement;
@@ -166,7 +166,7 @@ impl CandidateScheduler {
         reach: f64,
         radius: f64,
         bound_factor: f64,
-        take: &mut impl FnMut(CandidateKind, [u32; 2], f64),
+        take: &mut impl FnMut(PairKind, [u32; 2], f64),
     ) {
         let mut start = [0; 2];
         let due_pairs = core::mem::take(&mut self.due_pairs);
@@ -183,13 +183,9 @@ impl CandidateScheduler {
                 }
                 self.push(*pair, slack);
             } else {
-                for (kind, candidate_kind) in CandidateKind::ALL.into_iter().enumerate() {
+                for (kind, pair_kind) in PairKind::ALL.into_iter().enumerate() {
                     for index in start[kind]..end[kind] {
-                        take(
-                            candidate_kind,
-                            self.candidates[kind][index],
-                            self.distances[kind][index],
-                        );
+                        take(pair_kind, self.candidates[kind][index], self.distances[kind][index]);
                     }
                 }
             }
@@ -209,11 +205,11 @@ impl CandidateScheduler {
     }
 
     /// Measures the distances of the due candidates. NaN counts as touching.
-    fn measure(&mut self, distances: &mut impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>)) {
-        for (kind, candidate_kind) in CandidateKind::ALL.into_iter().enumerate() {
+    fn measure(&mut self, distances: &mut impl FnMut(PairKind, &[[u32; 2]], &mut Vec<f64>)) {
+        for (kind, pair_kind) in PairKind::ALL.into_iter().enumerate() {
             let of_kind = &mut self.distances[kind];
             of_kind.clear();
-            distances(candidate_kind, &self.candidates[kind], of_kind);
+            distances(pair_kind, &self.candidates[kind], of_kind);
             for distance in of_kind.iter_mut().filter(|distance| distance.is_nan()) {
                 *distance = f64::NEG_INFINITY;
             }

@@ -3,7 +3,7 @@
 use super::collision_mesh::CollisionMesh;
 use super::hierarchy::push_child_pairs;
 use super::kdop::KDops;
-use super::query::{CandidateKind, Candidates, push_candidates};
+use super::query::{Candidates, PairKind, push_candidates};
 
 /// Calls `visit` with every candidate whose leaves have k-DOPs no farther apart than `radius` (m).
 /// Candidates that are farther apart than `radius` may be among them; none within it is missing.
@@ -11,7 +11,7 @@ pub fn pairs_within_bounds(
     mesh: &CollisionMesh,
     kdops: &KDops,
     radius: f64,
-    mut visit: impl FnMut(CandidateKind, [u32; 2]),
+    mut visit: impl FnMut(PairKind, [u32; 2]),
 ) {
     let first_leaf = mesh.hierarchy.first_leaf();
     let mut stack = vec![[1_u32, 1]];
@@ -26,7 +26,7 @@ pub fn pairs_within_bounds(
             continue;
         }
         push_candidates(&mesh.hierarchy, a, b, &mut candidates);
-        for (kind, pairs) in CandidateKind::ALL.into_iter().zip(&mut candidates) {
+        for (kind, pairs) in PairKind::ALL.into_iter().zip(&mut candidates) {
             for pair in pairs.drain(..) {
                 visit(kind, pair);
             }

@@ -15,7 +15,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::broad_phase_fault::BroadPhaseFault;
-use super::model::{ContactModel, pair_kind};
+use super::model::ContactModel;
 use super::pair::{CandidatePair, Pair, PairKind};
 use crate::collision::broad_phase::queue::PairQueue;
 use crate::collision::broad_phase::scheduler::{CandidateScheduler, ProximityQuery};
@@ -84,7 +84,7 @@ pub struct CandidateList {
     query_positions: Field,
     /// Path length up to which its last query is valid, m.
     query_valid_until: f64,
-    /// Pending pairs of nodes and elements, and of edges, due at a path length.
+    /// Pending pairs of each kind, due at a path length.
     pending: [PairQueue; 2],
     /// Pairs that are measured in every step, in the order of [`Pair`].
     pub candidates: Vec<CandidatePair>,
@@ -97,14 +97,6 @@ pub struct CandidateList {
     due: Vec<[u32; 2]>,
     pub(super) gaps: Vec<f64>,
     pub(super) hits: Vec<FeatureHit>,
-}
-
-/// Index of a kind of pair in [`CandidateList::pending`].
-fn queue_index(kind: PairKind) -> usize {
-    match kind {
-        PairKind::NodeElement => 0,
-        PairKind::EdgeEdge => 1,
-    }
 }
 
 /// Smallest path length between two queries of the broad phase, m.
@@ -189,7 +181,7 @@ impl CandidateList {
             |pending: &mut [PairQueue; 2], kind: PairKind, [first, second]: [u32; 2], gap: f64| {
                 let due = from + model.free_path_length(kind, gap);
                 if due > admission_limit {
-                    pending[queue_index(kind)].push(due, [first, second]);
+                    pending[kind as usize].push(due, [first, second]);
                 } else {
                     candidates.push(CandidatePair { pair: Pair { kind, first, second }, gap });
                 }
@@ -197,7 +189,7 @@ impl CandidateList {
         for kind in PairKind::ALL {
             due.clear();
             gaps.clear();
-            pending[queue_index(kind)].pop_until(to, due);
+            pending[kind as usize].pop_until(to, due);
             model.append_gaps(positions, kind, due, gaps);
             for (pair, gap) in due.iter().zip(&*gaps) {
                 admit_or_defer(pending, kind, *pair, *gap);
@@ -216,8 +208,8 @@ impl CandidateList {
                     radius: model.distance + model.adhesion.range,
                     bound_factor: model.bound_factor(),
                 },
-                |kind, pairs, gaps| model.append_gaps(positions, pair_kind(kind), pairs, gaps),
-                |kind, pair, gap| admit_or_defer(pending, pair_kind(kind), pair, gap),
+                |kind, pairs, gaps| model.append_gaps(positions, kind, pairs, gaps),
+                |kind, pair, gap| admit_or_defer(pending, kind, pair, gap),
             );
         }
         let candidates = &mut self.candidates;
@@ -251,7 +243,7 @@ impl CandidateList {
             let free = model.free_path_length(pair.kind, candidate.gap);
             let stays = free < RELEASE_PATH * model.distance;
             if !stays {
-                pending[queue_index(pair.kind)].push(path_length + free, [pair.first, pair.second]);
+                pending[pair.kind as usize].push(path_length + free, [pair.first, pair.second]);
             }
             stays
         });

@@ -5,7 +5,6 @@ use super::distance_batch::{edge_edge_distances, node_element_distances};
 use super::pair::{Pair, PairKind, vectors_of};
 use crate::collision::broad_phase::collision_mesh::CollisionMesh;
 use crate::collision::broad_phase::kdop::KDops;
-use crate::collision::broad_phase::query::CandidateKind;
 use crate::collision::broad_phase::traversal::pairs_within_bounds;
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
@@ -213,15 +212,10 @@ fn pairs_within(
 ) {
     let kdops = KDops::new(&mesh.hierarchy, positions);
     pairs_within_bounds(mesh, &kdops, radius, |kind, [first, second]| {
-        let pair = Pair { kind: pair_kind(kind), first, second };
+        let pair = Pair { kind, first, second };
         let gap = pair.closest(&vectors_of(positions, pair.nodes(&mesh.topology))).squared.sqrt();
         if gap < radius {
             visit(pair, gap);
         }
     });
-}
-
-/// The kind of pair that a candidate of a collision query is.
-pub(super) fn pair_kind(kind: CandidateKind) -> PairKind {
-    if kind == CandidateKind::EdgeEdge { PairKind::EdgeEdge } else { PairKind::NodeElement }
 }

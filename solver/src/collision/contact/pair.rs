@@ -3,24 +3,11 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+pub use crate::collision::broad_phase::query::PairKind;
+
 use super::distance::{Closest, point_triangle, segment_segment};
 use crate::geometry::field::Field;
 use crate::geometry::topology::Topology;
-
-/// The kind of a pair.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum PairKind {
-    /// A node and an element.
-    NodeElement,
-    /// Two edges.
-    EdgeEdge,
-}
-
-impl PairKind {
-    /// Both kinds, in the order of candidates and contacts.
-    pub const ALL: [Self; 2] = [Self::NodeElement, Self::EdgeEdge];
-}
 
 /// Two primitives that can collide: a node and an element, or two edges, the lower number first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

@@ -39,13 +39,11 @@ pub struct BoxPairs {
     boxes: [Ends; 3],
     /// Lower end along the sweep axis, as an ordered integer, and element; sorted.
     order: Vec<u64>,
-    /// Slot of each element along the sweep axis.
-    slots: Vec<u32>,
     /// Lowest and highest cell of each element along both axes of the grid.
     covered: Vec<[[u16; 2]; 2]>,
-    /// First entry of each cell, or first element of each slot; then the number of all.
+    /// First entry of each cell; then the number of all.
     starts: Vec<u32>,
-    /// Next entry of each cell, or next element of each slot, while they are filled.
+    /// Next entry of each cell while they are filled.
     next: Vec<u32>,
     /// Elements of all cells.
     entries: Vec<u32>,
@@ -100,7 +98,10 @@ impl BoxPairs {
         let ranges =
             self.boxes.each_ref().map(|[lower, upper]| range_of(instruction_set, lower, upper));
         let (grid, sweep) = choose_grid(ranges, triangles.len());
-        self.sort(sweep, ranges[sweep]);
+        self.order.clear();
+        let keys = self.boxes[sweep][0].iter().zip(0_u64..);
+        self.order.extend(keys.map(|(x, element)| u64::from(ordered(*x)) << 32 | element));
+        self.order.sort_unstable();
         self.fill_cells(&grid);
         let Self { boxes, covered, starts, entries, cell, pairs, .. } = self;
         let ends = [&boxes[sweep], &boxes[grid.axes[0]], &boxes[grid.axes[1]]];
@@ -143,41 +144,6 @@ impl BoxPairs {
         }
     }
 
-    /// Sorts the elements by the lower ends of their boxes along an axis: into slots, then each slot.
-    fn sort(&mut self, sweep: usize, range: Range) {
-        let Self { boxes, order, slots, starts, next, .. } = self;
-        let lower = &boxes[sweep][0];
-        let scale = (lower.len() as f64 - 1.0) / range.length();
-        let scale = if scale.is_finite() { scale } else { 0.0 };
-        let origin = f64::from(range.ends[0]);
-        slots.clear();
-        starts.clear();
-        starts.resize(lower.len() + 1, 0);
-        for x in lower {
-            // The first slot if it is NaN.
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
-            let slot =
-                ((f64::from(*x) - origin) * scale).clamp(0.0, lower.len() as f64 - 1.0) as u32;
-            slots.push(slot);
-            starts[slot as usize + 1] += 1;
-        }
-        add_up(starts);
-        next.clear();
-        next.extend_from_slice(starts);
-        order.clear();
-        order.resize(lower.len(), 0);
-        for ((x, slot), element) in lower.iter().zip(&*slots).zip(0_u64..) {
-            let place = &mut next[*slot as usize];
-            order[*place as usize] = u64::from(ordered(*x)) << 32 | element;
-            *place += 1;
-        }
-        for range in starts.windows(2) {
-            if range[1] - range[0] > 1 {
-                order[range[0] as usize..range[1] as usize].sort_unstable();
-            }
-        }
-    }
-
     /// Puts the elements into the cells that their boxes cover, in the order of the sweep.
     fn fill_cells(&mut self, grid: &Grid) {
         let Self { boxes, order, covered, starts, next, entries, .. } = self;
@@ -198,7 +164,11 @@ impl BoxPairs {
                 }
             }
         }
-        add_up(starts);
+        let mut sum = 0;
+        for start in &mut *starts {
+            sum += *start;
+            *start = sum;
+        }
         next.clear();
         next.extend_from_slice(starts);
         entries.clear();
@@ -215,15 +185,6 @@ impl BoxPairs {
                 }
             }
         }
-    }
-}
-
-/// Makes of numbers, each one place further, the numbers of all before.
-fn add_up(starts: &mut [u32]) {
-    let mut sum = 0;
-    for start in starts {
-        sum += *start;
-        *start = sum;
     }
 }
 

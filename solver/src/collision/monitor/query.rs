@@ -1,15 +1,11 @@
 //! What a search looks for: passages on a motion, or intersections at a frame; and the tests of each.
 
-use super::primitives::{EDGES, NODES, Primitives};
-use super::separation::{
-    Motion, close_edge_elements_now, close_edges, close_elements, close_elements_now, close_nodes,
-    gaps_of_edge_elements_now, gaps_of_edges, gaps_of_elements, gaps_of_elements_now,
-    gaps_of_nodes,
-};
+use super::primitives::Primitives;
+use super::separation::{Motion, PairTest, filter_pairs, measure_pairs};
 use crate::geometry::topology::Topology;
 use crate::platform::simd::InstructionSet;
 
-/// Pairs of primitives. Of passages: nodes and elements ([`NODES`]), edges and edges ([`EDGES`], the lower number
+/// Pairs of primitives. Of passages: nodes and elements ([`NODES`](super::primitives::NODES)), edges and edges ([`EDGES`](super::primitives::EDGES), the lower number
 /// first). Of intersections: edges and elements ([`EDGE_ELEMENTS`]); the other list is empty.
 pub type Pairs = [Vec<[u32; 2]>; 2];
 
@@ -29,6 +25,22 @@ pub enum QueryKind {
 }
 
 impl QueryKind {
+    /// The pairs of primitives in each list of [`Pairs`].
+    fn primitives(self) -> &'static [PairTest] {
+        match self {
+            Self::Passages => &[PairTest::NodeElement, PairTest::Edges],
+            Self::Intersections => &[PairTest::EdgeElementNow],
+        }
+    }
+
+    /// The pairs of elements.
+    pub fn elements(self) -> PairTest {
+        match self {
+            Self::Passages => PairTest::Elements,
+            Self::Intersections => PairTest::ElementsNow,
+        }
+    }
+
     /// Adds the primitives of two elements that can meet to `pairs`.
     pub fn push_pairs(
         self,
@@ -54,15 +66,8 @@ impl QueryKind {
         motion: &Motion<'_>,
         close: &mut Pairs,
     ) {
-        match self {
-            Self::Passages => {
-                close_nodes(set, topology, &pairs[NODES], motion, &mut close[NODES]);
-                close_edges(set, topology, &pairs[EDGES], motion, &mut close[EDGES]);
-            }
-            Self::Intersections => {
-                let close = &mut close[EDGE_ELEMENTS];
-                close_edge_elements_now(set, topology, &pairs[EDGE_ELEMENTS], motion, close);
-            }
+        for (kind, (pairs, close)) in self.primitives().iter().zip(pairs.iter().zip(close)) {
+            filter_pairs(set, *kind, topology, pairs, motion, close);
         }
     }
 
@@ -75,47 +80,9 @@ impl QueryKind {
         motion: &Motion<'_>,
         gaps: &mut Gaps,
     ) {
-        gaps.iter_mut().for_each(Vec::clear);
-        match self {
-            Self::Passages => {
-                gaps_of_nodes(set, topology, &pairs[NODES], motion, &mut gaps[NODES]);
-                gaps_of_edges(set, topology, &pairs[EDGES], motion, &mut gaps[EDGES]);
-            }
-            Self::Intersections => {
-                let gaps = &mut gaps[EDGE_ELEMENTS];
-                gaps_of_edge_elements_now(set, topology, &pairs[EDGE_ELEMENTS], motion, gaps);
-            }
-        }
-    }
-
-    /// [`Self::filter`] for pairs of elements.
-    pub fn filter_elements(
-        self,
-        set: InstructionSet,
-        topology: &Topology,
-        elements: &[[u32; 2]],
-        motion: &Motion<'_>,
-        close: &mut Vec<[u32; 2]>,
-    ) {
-        match self {
-            Self::Passages => close_elements(set, topology, elements, motion, close),
-            Self::Intersections => close_elements_now(set, topology, elements, motion, close),
-        }
-    }
-
-    /// [`Self::measure`] for pairs of elements.
-    pub fn measure_elements(
-        self,
-        set: InstructionSet,
-        topology: &Topology,
-        elements: &[[u32; 2]],
-        motion: &Motion<'_>,
-        gaps: &mut Vec<f64>,
-    ) {
-        gaps.clear();
-        match self {
-            Self::Passages => gaps_of_elements(set, topology, elements, motion, gaps),
-            Self::Intersections => gaps_of_elements_now(set, topology, elements, motion, gaps),
+        for (kind, (pairs, gaps)) in self.primitives().iter().zip(pairs.iter().zip(gaps)) {
+            gaps.clear();
+            measure_pairs(set, *kind, topology, pairs, motion, gaps);
         }
     }
 }

@@ -10,7 +10,7 @@
 use super::boxes::BoxPairs;
 use super::primitives::{MAX_CROSSING_DISTANCE, Primitives};
 use super::query::{Pairs, QueryKind};
-use super::separation::{Motion, close_elements_now};
+use super::separation::{Motion, PairTest, filter_pairs};
 use crate::geometry::field::Field;
 use crate::geometry::topology::Topology;
 use crate::platform::simd::InstructionSet;
@@ -77,7 +77,8 @@ impl PairSearch {
         let motion = motion_between(frame, frame, reach);
         let (triangles, half) = (&topology.triangles, 0.5 * motion.distance);
         boxes.find(*instruction_set, triangles, &[frame], half, most).then(|| {
-            close_elements_now(*instruction_set, topology, &boxes.pairs, &motion, found);
+            let kind = PairTest::ElementsNow;
+            filter_pairs(*instruction_set, kind, topology, &boxes.pairs, &motion, found);
             boxes.pairs.len()
         })
     }
@@ -90,7 +91,8 @@ impl PairSearch {
         let half = 0.5 * motion.distance;
         boxes.find(*instruction_set, &topology.triangles, frames, half, usize::MAX);
         elements.clear();
-        kind.filter_elements(*instruction_set, topology, &boxes.pairs, motion, elements);
+        let (set, kind) = (*instruction_set, kind.elements());
+        filter_pairs(set, kind, topology, &boxes.pairs, motion, elements);
         let elements = core::mem::take(&mut self.elements);
         self.find_primitives(topology, &elements, motion, close);
         self.elements = elements;

@@ -30,6 +30,21 @@ pub struct Motion<'a> {
     pub distance: f64,
 }
 
+/// The primitives of a pair, and when they may meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PairTest {
+    /// A node and an element, on the motion.
+    NodeElement,
+    /// Two edges, on the motion.
+    Edges,
+    /// Two elements, on the motion.
+    Elements,
+    /// An edge and an element, at the first frame.
+    EdgeElementNow,
+    /// Two elements, at the first frame.
+    ElementsNow,
+}
+
 /// Positions of the nodes of one primitive in both frames; unused entries repeat a node.
 type Corners<L> = [[Vectors<L>; 3]; 2];
 
@@ -198,8 +213,9 @@ fn margins_of<
     (margins.lanes(), count)
 }
 
+/// Adds the pairs that no plane separates to `close`.
 #[inline(always)]
-fn filter_kernel<L: Wide, const FIRST: usize, const SECOND: usize, const FRAMES: usize>(
+fn filter<L: Wide, const FIRST: usize, const SECOND: usize, const FRAMES: usize>(
     topology: &Topology,
     pairs: &[[u32; 2]],
     motion: &Motion<'_>,
@@ -220,8 +236,9 @@ fn filter_kernel<L: Wide, const FIRST: usize, const SECOND: usize, const FRAMES:
     }
 }
 
+/// Adds to `gaps` by how much the gap of each pair exceeds d, m.
 #[inline(always)]
-fn gaps_kernel<L: Wide, const FIRST: usize, const SECOND: usize, const FRAMES: usize>(
+fn measure<L: Wide, const FIRST: usize, const SECOND: usize, const FRAMES: usize>(
     topology: &Topology,
     pairs: &[[u32; 2]],
     motion: &Motion<'_>,
@@ -238,67 +255,57 @@ fn gaps_kernel<L: Wide, const FIRST: usize, const SECOND: usize, const FRAMES: u
     }
 }
 
-/// Defines a function over pairs for every instruction set.
-macro_rules! over_pairs {
-    ($(#[$meta:meta])* $name:ident / $kernel:ident = $of:ident<$first:literal, $second:literal, $frames:literal>($out:ty)) => {
-        #[inline(always)]
-        fn $kernel<L: Wide>(
-            topology: &Topology,
-            pairs: &[[u32; 2]],
-            motion: &Motion<'_>,
-            out: &mut Vec<$out>,
-        ) {
-            $of::<L, $first, $second, $frames>(topology, pairs, motion, out);
-        }
-        dispatch_wide! {
-            $(#[$meta])*
-            pub fn $name / $kernel(
-                topology: &Topology,
-                pairs: &[[u32; 2]],
-                motion: &Motion<'_>,
-                out: &mut Vec<$out>,
-            )
-        }
-    };
+#[inline(always)]
+fn filter_kernel<L: Wide>(
+    kind: PairTest,
+    topology: &Topology,
+    pairs: &[[u32; 2]],
+    motion: &Motion<'_>,
+    close: &mut Vec<[u32; 2]>,
+) {
+    match kind {
+        PairTest::NodeElement => filter::<L, 1, 3, 2>(topology, pairs, motion, close),
+        PairTest::Edges => filter::<L, 2, 2, 2>(topology, pairs, motion, close),
+        PairTest::Elements => filter::<L, 3, 3, 2>(topology, pairs, motion, close),
+        PairTest::EdgeElementNow => filter::<L, 2, 3, 1>(topology, pairs, motion, close),
+        PairTest::ElementsNow => filter::<L, 3, 3, 1>(topology, pairs, motion, close),
+    }
 }
 
-over_pairs! {
-    /// Adds the pairs of a node and an element that no plane separates on the motion to `out`.
-    close_nodes / close_nodes_kernel = filter_kernel<1, 3, 2>([u32; 2])
+#[inline(always)]
+fn measure_kernel<L: Wide>(
+    kind: PairTest,
+    topology: &Topology,
+    pairs: &[[u32; 2]],
+    motion: &Motion<'_>,
+    gaps: &mut Vec<f64>,
+) {
+    match kind {
+        PairTest::NodeElement => measure::<L, 1, 3, 2>(topology, pairs, motion, gaps),
+        PairTest::Edges => measure::<L, 2, 2, 2>(topology, pairs, motion, gaps),
+        PairTest::Elements => measure::<L, 3, 3, 2>(topology, pairs, motion, gaps),
+        PairTest::EdgeElementNow => measure::<L, 2, 3, 1>(topology, pairs, motion, gaps),
+        PairTest::ElementsNow => measure::<L, 3, 3, 1>(topology, pairs, motion, gaps),
+    }
 }
-over_pairs! {
-    /// Adds the pairs of two edges that no plane separates on the motion to `out`.
-    close_edges / close_edges_kernel = filter_kernel<2, 2, 2>([u32; 2])
+
+dispatch_wide! {
+    /// Adds the pairs that no plane separates to `close`.
+    pub fn filter_pairs / filter_kernel(
+        kind: PairTest,
+        topology: &Topology,
+        pairs: &[[u32; 2]],
+        motion: &Motion<'_>,
+        close: &mut Vec<[u32; 2]>,
+    )
 }
-over_pairs! {
-    /// Adds the pairs of two elements that no plane separates on the motion to `out`.
-    close_elements / close_elements_kernel = filter_kernel<3, 3, 2>([u32; 2])
-}
-over_pairs! {
-    /// Adds the pairs of an edge and an element that no plane separates at the first frame to `out`.
-    close_edge_elements_now / close_edge_elements_kernel = filter_kernel<2, 3, 1>([u32; 2])
-}
-over_pairs! {
-    /// Adds the pairs of two elements that no plane separates at the first frame to `out`.
-    close_elements_now / close_elements_now_kernel = filter_kernel<3, 3, 1>([u32; 2])
-}
-over_pairs! {
-    /// Adds to `out` by how much the gap of each pair of a node and an element exceeds d on the motion, m.
-    gaps_of_nodes / gaps_of_nodes_kernel = gaps_kernel<1, 3, 2>(f64)
-}
-over_pairs! {
-    /// [`gaps_of_nodes`] for pairs of two edges.
-    gaps_of_edges / gaps_of_edges_kernel = gaps_kernel<2, 2, 2>(f64)
-}
-over_pairs! {
-    /// [`gaps_of_nodes`] for pairs of two elements.
-    gaps_of_elements / gaps_of_elements_kernel = gaps_kernel<3, 3, 2>(f64)
-}
-over_pairs! {
-    /// [`gaps_of_nodes`] for pairs of an edge and an element at the first frame.
-    gaps_of_edge_elements_now / gaps_of_edge_elements_kernel = gaps_kernel<2, 3, 1>(f64)
-}
-over_pairs! {
-    /// [`gaps_of_nodes`] for pairs of two elements at the first frame.
-    gaps_of_elements_now / gaps_of_elements_now_kernel = gaps_kernel<3, 3, 1>(f64)
+dispatch_wide! {
+    /// Adds to `gaps` by how much the gap of each pair exceeds the distance of the motion, m.
+    pub fn measure_pairs / measure_kernel(
+        kind: PairTest,
+        topology: &Topology,
+        pairs: &[[u32; 2]],
+        motion: &Motion<'_>,
+        gaps: &mut Vec<f64>,
+    )
 }

@@ -15,7 +15,7 @@ use super::paths::{ElementPaths, Paths};
 use super::primitives::adjacent_elements;
 use super::query::{Gaps, Pairs, QueryKind};
 use super::search::{BATCH, PairSearch, clear, motion_between};
-use super::separation::Motion;
+use super::separation::{Motion, measure_pairs};
 use crate::geometry::field::Field;
 use crate::geometry::topology::Topology;
 use crate::platform::simd::InstructionSet;
@@ -114,8 +114,9 @@ impl PairTracker {
         pairs.due(paths, due);
         elements.clear();
         elements.extend(due.iter().map(|number| pairs.pairs()[*number as usize]));
-        let (kind, set) = (search.kind, search.instruction_set);
-        kind.measure_elements(set, topology, elements, motion, gaps);
+        gaps.clear();
+        let kind = search.kind.elements();
+        measure_pairs(search.instruction_set, kind, topology, elements, motion, gaps);
         let mut gaps = gaps.iter();
         due.retain(|number| {
             let gap = gaps.next().copied().unwrap_or(f64::NAN);

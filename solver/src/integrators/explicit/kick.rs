@@ -12,7 +12,7 @@ use super::Explicit;
 use super::update::{KickParameters, kick_nodes};
 use crate::geometry::field::Field;
 use crate::mechanics::forces::damping::kick_factors;
-use crate::mechanics::supports::PrescribedNodes;
+use crate::mechanics::supports::{PrescribedNodes, RigidPlane};
 use crate::platform::fault_injection::Term;
 use crate::system::{FilmState, FilmSystem, bind};
 
@@ -112,11 +112,7 @@ impl Explicit {
             }
         }
         for (body, after) in system.supports.bodies.iter().zip(planes) {
-            // Every node of a plane has the plane's velocity.
-            let before = body
-                .nodes
-                .first()
-                .map_or(*after, |node| velocities.get(*node as usize).dot(&body.plane.normal));
+            let before = plane_velocity(body, velocities).unwrap_or(*after);
             loss += body.plane.mass * (after - before) * (after - before);
         }
         0.5 * loss
@@ -140,11 +136,7 @@ impl Explicit {
             damped += model.mass[node] * free;
         }
         for (body, after) in system.supports.bodies.iter().zip(planes) {
-            // Every node of a plane has the plane's velocity.
-            let before = body
-                .nodes
-                .first()
-                .map_or(*after, |node| velocities.get(*node as usize).dot(&body.plane.normal));
+            let before = plane_velocity(body, velocities).unwrap_or(*after);
             let mean = 0.5 * (before + after);
             damped += body.mass(model) * mean * mean;
         }
@@ -215,4 +207,10 @@ impl Explicit {
             .sum();
         0.5 * ((0..system.model.nodes()).map(node).sum::<f64>() + plane)
     }
+}
+
+/// The velocity (m/s) of a rigid plane along its normal, which all its nodes have; `None` without nodes.
+fn plane_velocity(body: &RigidPlane, velocities: &Field) -> Option<f64> {
+    let node = *body.nodes.first()? as usize;
+    Some(velocities.get(node).dot(&body.plane.normal))
 }

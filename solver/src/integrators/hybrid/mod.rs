@@ -15,10 +15,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::field::Field;
-use crate::integrators::explicit::{Explicit, StoredExplicit};
-use crate::integrators::implicit::{
-    GiveUpLimits, Implicit, Newton, Progress, StepControl, StoredImplicit,
-};
+use crate::integrators::explicit::Explicit;
+use crate::integrators::implicit::{GiveUpLimits, Implicit, Newton, Progress, StepControl};
 use crate::integrators::interface::{Advance, Budget, Computed, Integrator, Interval};
 use crate::integrators::{IntegratorEntry, StoredIntegrator, implicit};
 use crate::output::events::{Event, EventKind};
@@ -83,16 +81,6 @@ pub struct QuietStart {
     pub positions: Field,
 }
 
-/// The integrator at work, for a checkpoint.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum StoredActive {
-    /// Explicit.
-    Explicit(Box<StoredExplicit>),
-    /// Implicit.
-    Implicit(Box<StoredImplicit>),
-}
-
 /// Everything of the hybrid that a checkpoint stores.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -101,8 +89,8 @@ pub struct StoredHybrid {
     pub policy: Policy,
     /// Where explicit film began to move little; `None` while it moves.
     pub quiet_start: Option<QuietStart>,
-    /// The integrator at work.
-    pub active: StoredActive,
+    /// The integrator at work: explicit or implicit.
+    pub active: StoredIntegrator,
     /// Positions that the order of elimination is of, m.
     pub ordered_at: Field,
 }
@@ -110,10 +98,7 @@ pub struct StoredHybrid {
 impl StoredHybrid {
     /// Whether it can be of this system.
     pub(in crate::integrators) fn fits(&self, system: &FilmSystem) -> bool {
-        match &self.active {
-            StoredActive::Explicit(stored) => stored.fits(system),
-            StoredActive::Implicit(stored) => stored.fits(system),
-        }
+        !matches!(self.active, StoredIntegrator::Hybrid(_)) && self.active.fits(system)
     }
 }
 
@@ -147,12 +132,13 @@ impl Hybrid {
     /// Resumes at a state with what was stored there. The run continues with the same bits.
     pub fn resume(system: &FilmSystem, state: &FilmState, stored: StoredHybrid, cfl: f64) -> Self {
         let active = match stored.active {
-            StoredActive::Explicit(stored) => {
-                Active::Explicit(Box::new(Explicit::resume(system, state, *stored, cfl)))
+            StoredIntegrator::Explicit(stored) => {
+                Active::Explicit(Box::new(Explicit::resume(system, state, stored, cfl)))
             }
-            StoredActive::Implicit(stored) => {
+            StoredIntegrator::Implicit(stored) => {
                 Active::Implicit(Box::new(Implicit::resume(system, state, *stored)))
             }
+            StoredIntegrator::Hybrid(_) => unreachable!("it does not fit"),
         };
         let StoredHybrid { policy, quiet_start, ordered_at, .. } = stored;
         Self { cfl, policy, quiet_start, active, ordered_at, newton: None }
@@ -326,11 +312,7 @@ impl Integrator for Hybrid {
     }
 
     fn stored(&self) -> Option<StoredIntegrator> {
-        let active = match self.active().stored()? {
-            StoredIntegrator::Explicit(stored) => StoredActive::Explicit(Box::new(stored)),
-            StoredIntegrator::Implicit(stored) => StoredActive::Implicit(stored),
-            StoredIntegrator::Hybrid(_) => return None,
-        };
+        let active = self.active().stored()?;
         let (policy, ordered_at) = (self.policy, self.ordered_at.clone());
         let quiet_start = self.quiet_start.clone();
         let stored = StoredHybrid { policy, quiet_start, active, ordered_at };

@@ -8,7 +8,7 @@ use core::ops::{Deref, DerefMut};
 
 use serde::{Deserialize, Serialize};
 
-use super::{Lanes, WIDTH};
+use super::{Lanes, WIDTH, Wide};
 
 /// A column of values; it dereferences to a slice.
 #[derive(Clone, Default, Serialize, Deserialize)]

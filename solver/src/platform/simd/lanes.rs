@@ -16,26 +16,6 @@ use super::{NodeSum, Vectors, WIDTH, Wide};
 pub struct Lanes(pub [f64; WIDTH]);
 
 impl Lanes {
-    /// One value in every lane.
-    #[inline(always)]
-    pub fn splat(value: f64) -> Self {
-        Self([value; WIDTH])
-    }
-
-    /// Eight values from `column[first..]`.
-    #[inline(always)]
-    pub fn load(column: &[f64], first: usize) -> Self {
-        let mut lanes = [0.0; WIDTH];
-        lanes.copy_from_slice(&column[first..first + WIDTH]);
-        Self(lanes)
-    }
-
-    /// Writes eight values to `column[first..]`.
-    #[inline(always)]
-    pub fn store(self, column: &mut [f64], first: usize) {
-        column[first..first + WIDTH].copy_from_slice(&self.0);
-    }
-
     #[expect(
         clippy::needless_range_loop,
         reason = "an iterator is not inlined into a target feature"
@@ -47,39 +27,6 @@ impl Lanes {
         let mut lanes = [0.0; WIDTH];
         for lane in 0..WIDTH {
             lanes[lane] = operation(self.0[lane], other.0[lane]);
-        }
-        Self(lanes)
-    }
-
-    /// Square root of each lane.
-    #[must_use]
-    #[inline(always)]
-    pub fn sqrt(self) -> Self {
-        self.zip(self, |a, _| a.sqrt())
-    }
-
-    /// Quotient of each pair of lanes.
-    #[must_use]
-    #[inline(always)]
-    pub fn over(self, other: Self) -> Self {
-        self.zip(other, |a, b| a / b)
-    }
-
-    /// The larger of each pair of lanes; `other` where either is NaN.
-    #[must_use]
-    #[inline(always)]
-    pub fn max(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a > b { a } else { b })
-    }
-
-    /// The lane of `yes` where this lane is above 0, else that of `no` (also for NaN).
-    #[must_use]
-    #[inline(always)]
-    #[expect(clippy::needless_range_loop, reason = "as in `zip`")]
-    pub fn if_positive(self, yes: Self, no: Self) -> Self {
-        let mut lanes = [0.0; WIDTH];
-        for lane in 0..WIDTH {
-            lanes[lane] = if self.0[lane] > 0.0 { yes.0[lane] } else { no.0[lane] };
         }
         Self(lanes)
     }
@@ -147,15 +94,17 @@ impl Neg for Lanes {
 impl Wide for Lanes {
     #[inline(always)]
     fn splat(value: f64) -> Self {
-        Self::splat(value)
+        Self([value; WIDTH])
     }
     #[inline(always)]
     fn load(column: &[f64], first: usize) -> Self {
-        Self::load(column, first)
+        let mut lanes = [0.0; WIDTH];
+        lanes.copy_from_slice(&column[first..first + WIDTH]);
+        Self(lanes)
     }
     #[inline(always)]
     fn store(self, column: &mut [f64], first: usize) {
-        self.store(column, first);
+        column[first..first + WIDTH].copy_from_slice(&self.0);
     }
     #[inline(always)]
     fn lanes(self) -> Lanes {
@@ -163,19 +112,24 @@ impl Wide for Lanes {
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        self.sqrt()
+        self.zip(self, |a, _| a.sqrt())
     }
     #[inline(always)]
     fn over(self, other: Self) -> Self {
-        self.over(other)
+        self.zip(other, |a, b| a / b)
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        self.max(other)
+        self.zip(other, |a, b| if a > b { a } else { b })
     }
     #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "as in `zip`")]
     fn if_positive(self, yes: Self, no: Self) -> Self {
-        self.if_positive(yes, no)
+        let mut lanes = [0.0; WIDTH];
+        for lane in 0..WIDTH {
+            lanes[lane] = if self.0[lane] > 0.0 { yes.0[lane] } else { no.0[lane] };
+        }
+        Self(lanes)
     }
     #[inline(always)]
     #[expect(unsafe_code, reason = "the trait's contract")]

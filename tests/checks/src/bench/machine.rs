@@ -1,14 +1,11 @@
-//! Speed of the machine itself, to compare reports of different machines.
-//!
-//! Arithmetic: multiplications and additions of f64 on one core, not fused, as in billow's kernels.
-//! Memory: a copy between two buffers, bytes read plus bytes written; one copy larger than the private
-//! cache of a core, one within it. A shared cache may be larger than both.
+//! Speed of the machine's memory, to compare reports of different machines: a copy between two buffers, bytes
+//! read plus bytes written; one copy larger than the private cache of a core, one within it. A shared cache may
+//! be larger than both.
 
 use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 
-use billow_solver::platform::probe;
 use billow_solver::platform::simd::InstructionSet;
 use billow_study::platform::files::{Disk, Files};
 use billow_study::platform::provenance;
@@ -32,18 +29,10 @@ pub(super) fn row(set: InstructionSet) -> Row {
     ]
 }
 
-/// Speed of arithmetic and memory on one core.
+/// Speed of memory on one core.
 pub(super) fn speed(plan: &Plan<'_>) -> Row {
-    let (repeats, rounds) =
-        if plan.effort == Effort::Quick { (3, 200_000) } else { (10, 2_000_000) };
-    let multiply_adds = |_| {
-        let start = Instant::now();
-        let (pairs, sum) = probe::multiply_add(plan.instruction_set, black_box(rounds));
-        black_box(sum);
-        pairs as f64 / start.elapsed().as_secs_f64()
-    };
+    let repeats = if plan.effort == Effort::Quick { 3 } else { 10 };
     vec![
-        ("multiply_adds_per_second", (0..repeats).map(multiply_adds).fold(0.0, f64::max).into()),
         ("copy_bytes_per_second", copy(LARGE, repeats, 1).into()),
         ("copy_bytes", LARGE.into()),
         ("cached_copy_bytes_per_second", copy(SMALL, repeats, 200).into()),
