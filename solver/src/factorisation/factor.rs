@@ -161,9 +161,6 @@ fn add_block(
 
 impl Elimination {
     /// The elimination of these unknowns of a film. Its dissection uses the positions (m).
-    ///
-    /// # Panics
-    /// At 2³² unknowns.
     pub fn new(model: &FilmModel, unknowns: &Unknowns, positions: &Field) -> Self {
         let plans = plan(model, unknowns, positions);
         let mut starts = vec![0];

@@ -197,9 +197,6 @@ fn locate(plans: &mut [Plan], faces: Vec<Vec<FaceUnknowns>>, schedule: &Schedule
 }
 
 /// The fronts of a film's unknowns, children before parents. Their dissection uses the positions (m).
-///
-/// # Panics
-/// At 2³² unknowns.
 pub fn plan(model: &FilmModel, unknowns: &Unknowns, positions: &Field) -> Vec<Plan> {
     let faces: Vec<[u32; 3]> = model.triangles.iter().chain(&model.closure).copied().collect();
     let free = |node: u32| !unknowns.node_range[node as usize].is_empty();

@@ -118,9 +118,6 @@ pub fn disc(rings: u32, radius: f64) -> Shell {
 }
 
 /// A sphere: an icosahedron whose faces are cut into four `level` times, wound outward.
-///
-/// # Panics
-/// With 2^32 nodes or more.
 pub fn icosphere(level: u32, radius: f64) -> Shell {
     let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
     let mut nodes: Vec<Vector3<f64>> = Vec::new();
@@ -211,9 +208,6 @@ pub fn tube(around: u32, along: u32, radius: f64, length: f64) -> Shell {
 }
 
 /// Several pieces of film as one shell, without closing faces.
-///
-/// # Panics
-/// With 2^32 nodes or more.
 pub fn joined(pieces: &[Shell]) -> Shell {
     let mut whole = Shell::default();
     for piece in pieces {

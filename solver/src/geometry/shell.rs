@@ -111,9 +111,6 @@ impl Shell {
     }
 
     /// Checks that all nodes exist, and that every edge has at most two faces, with opposite directions.
-    ///
-    /// # Errors
-    /// [`ShellError`].
     pub fn check(&self) -> Result<(), ShellError> {
         let last = self.positions.len().saturating_sub(1);
         let mut directed_edges = BTreeMap::new();
@@ -193,9 +190,6 @@ impl Shell {
 
     /// Closes every boundary loop by a fan of closing faces. `free`: projector onto the free directions of a
     /// node. Returns the new nodes at the apexes, which have no mass.
-    ///
-    /// # Panics
-    /// At 2³² nodes.
     pub fn close(&mut self, free: impl Fn(u32) -> Matrix3<f64>) -> Vec<u32> {
         let mut apexes = Vec::new();
         for (apex, nodes) in self.fans() {

@@ -88,9 +88,6 @@ fn of_energies(model: &ContactModel, system: &FilmSystem, state: &FilmState) -> 
 }
 
 /// Checks the contact forces of a state.
-///
-/// # Errors
-/// [`AuditKind::Contact`].
 pub(super) fn check(
     system: &FilmSystem,
     state: &FilmState,

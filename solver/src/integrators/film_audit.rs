@@ -48,9 +48,6 @@ impl FilmAudit {
     }
 
     /// Looks at a state at the end of an interval, with its forces.
-    ///
-    /// # Errors
-    /// A [`Failure`] ends the run.
     pub fn inspect(
         &mut self,
         system: &FilmSystem,

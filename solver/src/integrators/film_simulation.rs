@@ -186,9 +186,6 @@ impl FilmSimulation {
     /// Advances towards `target` (s) under a phase by at most `steps` steps, and subtracts the steps taken
     /// from `steps`. Returns whether it reached the target. A pause changes no bit of the run: the audit
     /// tests its block of steps when it is complete.
-    ///
-    /// # Errors
-    /// As [`Self::advance`].
     pub fn advance_at_most(
         &mut self,
         target: f64,
@@ -199,9 +196,6 @@ impl FilmSimulation {
     }
 
     /// [`Self::advance_at_most`] with a stopwatch that learns when each stage begins.
-    ///
-    /// # Errors
-    /// As [`Self::advance`].
     pub fn advance_timed(
         &mut self,
         target: f64,

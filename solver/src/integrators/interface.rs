@@ -75,15 +75,9 @@ pub struct StepMotion<'a> {
 /// Checks accepted steps, whatever the integrator.
 pub trait StepAudit: fmt::Debug {
     /// Learns how an accepted step moves the nodes, before [`Self::record`].
-    ///
-    /// # Errors
-    /// A [`Failure`] ends the run.
     fn moved(&mut self, motion: StepMotion<'_>) -> Result<(), Failure>;
 
     /// Records the state after a step.
-    ///
-    /// # Errors
-    /// A [`Failure`] ends the run.
     fn record(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure>;
 
     /// Looks at the state at the end of an interval that lies within a step: the checks of the recorded steps can
@@ -91,9 +85,6 @@ pub trait StepAudit: fmt::Debug {
     fn look(&mut self, system: &FilmSystem, state: &FilmState);
 
     /// Completes the checks of all recorded steps, at the end of an interval.
-    ///
-    /// # Errors
-    /// A [`Failure`] ends the run.
     fn complete(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure>;
 }
 

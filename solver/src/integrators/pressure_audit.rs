@@ -52,9 +52,6 @@ fn set_virtual_displacements(system: &FilmSystem, positions: &Field, moves: &mut
 }
 
 /// Checks gas and pressure of a state with these forces. `moves`: scratch memory, a vector for each node.
-///
-/// # Errors
-/// [`AuditKind::Pressure`].
 pub(super) fn check(
     system: &FilmSystem,
     state: &FilmState,

@@ -100,9 +100,6 @@ pub struct Cost {
 }
 
 /// The expected cost of a run of a scene.
-///
-/// # Errors
-/// [`SceneError`] if the scene cannot be started.
 pub fn cost(scene: &Scene) -> Result<Cost, SceneError> {
     (entry(scene.solver.model).cost)(scene)
 }
@@ -116,9 +113,6 @@ pub fn reference_scene(scene: &Scene) -> Option<Scene> {
 
 /// The static equilibria of a [`reference_scene`], computed as they are asked for; `known` are computed
 /// already.
-///
-/// # Errors
-/// [`SceneError`] if the design has no pattern, or its model has its equilibria in closed form.
 pub fn ladder(
     instruction_set: InstructionSet,
     scene: &Scene,
@@ -135,9 +129,6 @@ pub fn ladder(
 
 /// Runs a scene on the model it names. A model with static equilibria in closed form judges its run; any
 /// other run is judged with [`Deployment::judge`]. Every instruction set gives the same bits.
-///
-/// # Errors
-/// [`SceneError`] if the scene cannot be started.
 pub fn solve(
     instruction_set: InstructionSet,
     scene: &Scene,
@@ -147,9 +138,6 @@ pub fn solve(
 }
 
 /// Continues a run from a checkpoint, with the bits of a run that was never stopped.
-///
-/// # Errors
-/// [`ResumeError`].
 pub fn resume(
     instruction_set: InstructionSet,
     scene: &Scene,

@@ -101,9 +101,6 @@ impl<S: Serialize + DeserializeOwned, R: Serialize + DeserializeOwned> Checkpoin
     }
 
     /// Reads a checkpoint of the scene with this fingerprint.
-    ///
-    /// # Errors
-    /// [`CheckpointError`].
     pub fn from_text(text: &str, scene: &str) -> Result<Self, CheckpointError> {
         Self::read(&seal::open(text).map_err(invalid)?, scene)
     }

@@ -42,9 +42,6 @@ pub fn seal(object: &str) -> String {
 }
 
 /// The text of the object that was sealed, without the checksum.
-///
-/// # Errors
-/// [`SealError`] for any other text.
 pub fn open(text: &str) -> Result<String, SealError> {
     let rest = text.strip_prefix(BEFORE).ok_or(SealError::Missing)?;
     // An index within a character gives no slice.

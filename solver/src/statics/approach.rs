@@ -64,12 +64,6 @@ const INTERMEDIATE: Tolerances = Tolerances { residual: 1e-3, step: 1e-3, iterat
 /// Finds the static equilibrium under this load from these positions (m), with moving supports at the
 /// end of their motion. `from` (Pa): the overpressure at which the positions already are an equilibrium,
 /// if they are; the continuation starts there.
-///
-/// # Errors
-/// [`StaticFailure`] of the last attempt.
-///
-/// # Panics
-/// Never: there is at least one attempt.
 pub fn settle(
     loaded: &Loaded<'_>,
     positions: &Field,

@@ -87,9 +87,6 @@ pub struct Reaction {
 
 /// The static equilibrium of a scene under its fixed pressure, with moving supports at the end of their
 /// motion. Velocities, gas, release and times have no effect.
-///
-/// # Errors
-/// [`StaticError`].
 pub fn solve(
     scene: &FilmScene,
     observer: IterationObserver<'_>,
@@ -99,9 +96,6 @@ pub fn solve(
 
 /// [`solve`], starting from a known equilibrium of the same scene at another overpressure (Pa). It needs
 /// fewer steps if the pressure is lower.
-///
-/// # Errors
-/// As [`solve`].
 pub fn solve_from(
     scene: &FilmScene,
     known: Option<(&StaticSolution, f64)>,
@@ -155,9 +149,6 @@ pub fn solve_from(
 }
 
 /// [`solve`] without an observer.
-///
-/// # Errors
-/// As [`solve`].
 pub fn solve_unobserved(scene: &FilmScene) -> Result<StaticSolution, StaticError> {
     solve(scene, &mut |_| ControlFlow::Continue(()))
 }

@@ -95,9 +95,6 @@ const FACE: &str = "three or more different vertices by number, 1 for the first 
                     far, as in `f 1 2 3` or `f 1/4 2/5 -1/6`";
 
 /// Reads a surface. Where the text contains no vertices, its faces refer to `given` external ones.
-///
-/// # Errors
-/// [`ObjError`] at the first invalid line.
 pub fn read(text: &str, given: usize) -> Result<Surface, ObjError> {
     let mut surface = Surface::default();
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);

@@ -45,9 +45,6 @@ pub trait System<const N: usize> {
     fn next_branch(&self, branch: Self::Branch, state: &[f64; N]) -> Self::Branch;
 
     /// Checks whether a state is valid.
-    ///
-    /// # Errors
-    /// Kind and place of the failure.
     fn check(&self, state: &[f64; N]) -> Result<(), (AuditKind, &'static str)>;
 }
 
@@ -124,9 +121,6 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
 
     /// Integrates towards `target` (s) by at most `steps` accepted steps, and subtracts the steps taken from
     /// `steps`. Returns whether it reached the target. A pause changes no bit.
-    ///
-    /// # Errors
-    /// As [`Self::advance`].
     pub fn advance_at_most<S: System<N, Branch = B>>(
         &mut self,
         system: &S,

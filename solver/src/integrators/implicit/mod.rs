@@ -317,9 +317,6 @@ impl Implicit {
     }
 
     /// Takes a first step beyond the state; whether there is one that pays.
-    ///
-    /// # Errors
-    /// What the audit finds.
     pub(super) fn begin(
         &mut self,
         system: &FilmSystem,

@@ -112,9 +112,6 @@ pub struct FilmModel {
 
 impl FilmModel {
     /// Film of these triangles with their flat reference positions (m), over `nodes` nodes.
-    ///
-    /// # Errors
-    /// [`FilmError`].
     pub fn new(
         film: &Film,
         nodes: usize,
@@ -126,9 +123,6 @@ impl FilmModel {
 
     /// The film of a shell, with its closing faces. `held`: whether supports hold a node in all three
     /// directions.
-    ///
-    /// # Errors
-    /// [`FilmError`].
     pub fn supported(
         film: &Film,
         shell: &Shell,
@@ -139,9 +133,6 @@ impl FilmModel {
     }
 
     /// The film of a shell, with its closing faces. Their vertices without film are fixed in space.
-    ///
-    /// # Errors
-    /// [`FilmError`].
     pub fn of_shell(film: &Film, shell: &Shell) -> Result<Self, FilmError> {
         let nodes = shell.positions.len();
         Self::build(film, nodes, &shell.triangles, &shell.reference, &shell.closure)

@@ -26,9 +26,6 @@ const AMPLITUDE_SUBDIVISIONS: u32 = 8;
 
 /// Adds the imperfection of a scene's seed to its stowed capsule: the same displacement field on every
 /// mesh. Returns [`imperfection_amplitude`].
-///
-/// # Errors
-/// If the design has no pattern.
 pub fn imperfect(
     mesh: &mut Mesh,
     design: &FoldDesign,
@@ -47,9 +44,6 @@ pub fn imperfect(
 
 /// Amplitude of the imperfection of a stowed capsule, m: the given one, or the default of the design;
 /// `None` for seed 0.
-///
-/// # Errors
-/// If the design has no pattern.
 pub fn imperfection_amplitude(
     design: &FoldDesign,
     seed: u64,
@@ -65,9 +59,6 @@ pub fn imperfection_amplitude(
 }
 
 /// Contact distance of the capsule of a design, m: the given one, or the default of the design.
-///
-/// # Errors
-/// If the design has no pattern.
 pub fn contact_distance(given: Option<f64>, design: &FoldDesign) -> Result<f64, SceneError> {
     match given {
         Some(distance) => Ok(distance),
@@ -76,9 +67,6 @@ pub fn contact_distance(given: Option<f64>, design: &FoldDesign) -> Result<f64, 
 }
 
 /// Contact of the capsule of a design, with its [`contact_distance`].
-///
-/// # Errors
-/// If the design has no pattern.
 pub fn resolved_contact(
     contact: FilmContact,
     design: &FoldDesign,
@@ -93,9 +81,6 @@ pub const LID: &str = "lid";
 pub const BASE: &str = "base";
 
 /// The capsule of a scene in one of its shapes, without contact, at this CFL number; and its mesh.
-///
-/// # Errors
-/// [`SceneError`] if the scene is invalid or the capsule cannot be built.
 pub fn film_scene(
     instruction_set: InstructionSet,
     scene: &Scene,
@@ -163,9 +148,6 @@ fn sorted(mut nodes: Vec<u32>) -> Vec<u32> {
 }
 
 /// The film of a scene at time 0, with further nodes that move as prescribed.
-///
-/// # Errors
-/// [`SceneError::Invalid`] if the mesh is not a film, or a number is out of range.
 pub fn start(scene: &FilmScene, seating: &[PrescribedNodes]) -> Result<FilmSimulation, SceneError> {
     let (mut system, settings, gas) = constants(scene)?;
     system.supports.movers.extend(seating.iter().cloned());
@@ -178,9 +160,6 @@ pub fn start(scene: &FilmScene, seating: &[PrescribedNodes]) -> Result<FilmSimul
 }
 
 /// The film of a scene as a system, how it is integrated, and its gas at time 0.
-///
-/// # Errors
-/// As [`start`].
 pub fn constants(
     scene: &FilmScene,
 ) -> Result<(FilmSystem, SimulationSettings, GasState), SceneError> {

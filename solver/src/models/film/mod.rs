@@ -59,9 +59,6 @@ pub(super) const ENTRY: ModelEntry = ModelEntry {
 };
 
 /// Checks a scene for this model, as far as possible without its fold pattern.
-///
-/// # Errors
-/// [`SceneError::Invalid`].
 pub fn check(scene: &Scene) -> Result<(), SceneError> {
     scene.validate()?;
     cfl_of(scene).map(|_| ())
@@ -69,9 +66,6 @@ pub fn check(scene: &Scene) -> Result<(), SceneError> {
 
 /// Elements and steps of a run whose film is never quiescent. The steps are those of the film without
 /// gas; gas changes them little.
-///
-/// # Errors
-/// As [`solve_scene`].
 pub fn cost(scene: &Scene) -> Result<Cost, SceneError> {
     let stowed = Shape::Stowed(scene.design.stowed_height);
     // Nothing runs here, and every instruction set gives the same bits.
@@ -150,17 +144,11 @@ impl Rings {
 
 impl FilmRun {
     /// The film of a scene at time 0; with `rings` a capsule.
-    ///
-    /// # Errors
-    /// [`SceneError::Invalid`] if the mesh is not a film, or a number is out of range.
     pub fn of(scene: &FilmScene, rings: Option<Rings>) -> Result<Self, SceneError> {
         Self::seated(scene, rings, &[])
     }
 
     /// [`Self::of`] with further nodes that move as prescribed.
-    ///
-    /// # Errors
-    /// As [`Self::of`].
     pub fn seated(
         scene: &FilmScene,
         rings: Option<Rings>,
@@ -170,9 +158,6 @@ impl FilmRun {
     }
 
     /// The film of a scene in a stored state. The run continues with the same bits.
-    ///
-    /// # Errors
-    /// As [`Self::of`], or if the state is that of another film.
     pub fn resume(
         scene: &FilmScene,
         rings: Option<Rings>,
@@ -198,9 +183,6 @@ impl FilmRun {
 
     /// The capsule of a scene, stowed, at time 0, with this contact. Contact without a distance has the
     /// default one of the design.
-    ///
-    /// # Errors
-    /// As [`solve`].
     pub fn from_scene(
         instruction_set: InstructionSet,
         scene: &Scene,

@@ -29,9 +29,6 @@ const AMPLITUDE_PER_GAP: f64 = 0.2;
 
 /// The reference gap of a design, m. Caps do not matter: an erected capsule with circular caps has that
 /// of its stowed stack with polygon caps.
-///
-/// # Errors
-/// If the design has no pattern.
 pub fn reference_gap(design: &FoldDesign) -> Result<f64, FoldError> {
     let design = FoldDesign { caps: Caps::Polygon, ..design.clone() };
     let stowed = Shape::Stowed(design.stowed_height);
@@ -43,17 +40,11 @@ pub fn reference_gap(design: &FoldDesign) -> Result<f64, FoldError> {
 }
 
 /// Default contact distance of a capsule, m.
-///
-/// # Errors
-/// As [`reference_gap`].
 pub fn contact_distance(design: &FoldDesign) -> Result<f64, FoldError> {
     Ok(DISTANCE_PER_GAP * reference_gap(design)?)
 }
 
 /// Default amplitude of the imperfection of a stowed capsule, m.
-///
-/// # Errors
-/// As [`reference_gap`].
 pub fn imperfection_amplitude(design: &FoldDesign) -> Result<f64, FoldError> {
     Ok(AMPLITUDE_PER_GAP * reference_gap(design)?)
 }

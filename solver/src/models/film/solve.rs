@@ -14,9 +14,6 @@ use crate::scene::film_scene::{FilmContact, FilmScene};
 use crate::scene::timeline::Timeline;
 
 /// Runs a scene as film with this contact and CFL number.
-///
-/// # Errors
-/// [`SceneError`] if the scene cannot be started.
 pub fn solve(
     instruction_set: InstructionSet,
     scene: &Scene,
@@ -36,9 +33,6 @@ pub fn solve(
 }
 
 /// Runs a scene with the contact and the CFL number of the scene.
-///
-/// # Errors
-/// As [`super::check`], or if the capsule cannot be built.
 pub fn solve_scene(
     instruction_set: InstructionSet,
     scene: &Scene,
@@ -49,9 +43,6 @@ pub fn solve_scene(
 }
 
 /// Continues a run of [`solve_scene`] from its checkpoint.
-///
-/// # Errors
-/// [`ResumeError`].
 pub fn resume_scene(
     instruction_set: InstructionSet,
     scene: &Scene,

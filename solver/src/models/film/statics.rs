@@ -67,9 +67,6 @@ pub struct Erected {
 }
 
 /// The erected capsule of a scene. Its held nodes still have to move to their stowed positions.
-///
-/// # Errors
-/// [`SceneError`] if the capsule cannot be built.
 pub fn erected(instruction_set: InstructionSet, scene: &Scene) -> Result<Erected, SceneError> {
     scene.validate()?;
     let reference =
@@ -125,9 +122,6 @@ impl Erected {
 
     /// The static equilibrium of the capsule at this overpressure (Pa), searched from the positions now.
     /// Moves the nodes there.
-    ///
-    /// # Errors
-    /// [`StaticFailure`].
     pub fn settle(&mut self, overpressure: f64) -> Result<StaticState, StaticFailure> {
         self.settle_while(overpressure, &mut || true)
     }
@@ -172,9 +166,6 @@ impl Erected {
 
 /// Static equilibria of a scene's capsule at these overpressures (Pa), in the given order. Descending
 /// pressures need the fewest steps.
-///
-/// # Errors
-/// [`SceneError`] if the capsule cannot be built, or has no such equilibrium.
 pub fn static_states(
     instruction_set: InstructionSet,
     scene: &Scene,

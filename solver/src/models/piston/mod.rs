@@ -54,10 +54,6 @@ pub(super) const ENTRY: ModelEntry = ModelEntry {
 };
 
 /// Runs a scene as a piston.
-///
-/// # Errors
-/// [`SceneError`] if the scene cannot be started: the design is infeasible, a value is out of range, or
-/// the supports are not those of a piston (bottom held along z, top free along z).
 pub fn solve(scene: &Scene, observer: &mut dyn Observer) -> Result<Deployment, SceneError> {
     let mut run = PistonRun::from_scene(scene)?;
     Ok(run::run(&mut run, &Timeline::new(scene), observer))
@@ -78,9 +74,6 @@ fn check(scene: &Scene) -> Result<(), SceneError> {
 
 impl PistonRun {
     /// The piston of a scene, stowed, at time 0.
-    ///
-    /// # Errors
-    /// As [`solve`].
     pub fn from_scene(scene: &Scene) -> Result<Self, SceneError> {
         check(scene)?;
         let pattern = FoldPattern::new(&scene.design)?;

@@ -28,9 +28,6 @@ pub trait Model {
 
     /// Advances towards `target` as [`Self::advance`], by at most `steps` steps, and subtracts the steps
     /// taken from `steps`. Returns whether it reached the target. A model that cannot pause always does.
-    ///
-    /// # Errors
-    /// As [`Self::advance`].
     fn advance_at_most(
         &mut self,
         target: f64,

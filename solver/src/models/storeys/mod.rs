@@ -53,10 +53,6 @@ pub(super) const ENTRY: ModelEntry = ModelEntry {
 };
 
 /// Runs a scene as storeys.
-///
-/// # Errors
-/// [`SceneError`] if the scene cannot be started: the design is infeasible, a value is out of range, or
-/// the supports are not those of the model (bottom ring held in x, y and z, top free).
 pub fn solve(
     instruction_set: InstructionSet,
     scene: &Scene,
@@ -68,9 +64,6 @@ pub fn solve(
 
 impl StoreysRun {
     /// The storeys of a scene, stowed, at time 0.
-    ///
-    /// # Errors
-    /// As [`solve`].
     pub fn from_scene(instruction_set: InstructionSet, scene: &Scene) -> Result<Self, SceneError> {
         from_scene::check(scene)?;
         let pattern = FoldPattern::new(&scene.design)?;

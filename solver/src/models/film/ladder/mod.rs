@@ -86,9 +86,6 @@ pub struct Ladder {
 impl Ladder {
     /// The ladder of a [`super::reference_scene`] with states that are known already. Known states whose
     /// pressure is not that of their level are ignored.
-    ///
-    /// # Errors
-    /// If the design has no pattern.
     pub fn new(
         instruction_set: InstructionSet,
         scene: &Scene,
@@ -138,18 +135,12 @@ impl Ladder {
 
     /// The design shape. `continues` is called at every iteration of a search; when it returns `false` the
     /// search ends.
-    ///
-    /// # Errors
-    /// [`NoReference`].
     pub fn design(&mut self, continues: Continues<'_>) -> Result<StaticShape, NoReference> {
         self.state(0, continues)
     }
 
     /// The static shape at an overpressure (Pa). Below the lowest rung, also at 0 and below, it is that of
     /// the lowest rung, with the overpressure of that rung: a folded capsule without gas is stalled.
-    ///
-    /// # Errors
-    /// [`NoReference`].
     pub fn at(
         &mut self,
         overpressure: f64,
