@@ -1,7 +1,8 @@
-//! Vector instructions, checksums of texts, a stopwatch interface, and fault injection.
+//! Vector instructions, pseudo-random numbers, checksums of texts, a stopwatch interface, and fault injection.
 //! Nothing here knows the physics.
 
 pub mod fault_injection;
+pub(crate) mod random;
 pub mod seal;
 pub mod simd;
 pub mod stopwatch;

@@ -18,3 +18,10 @@ pub enum SceneError {
         problem: String,
     },
 }
+
+impl SceneError {
+    /// An invalid value at this key.
+    pub fn invalid(key: impl Into<String>, problem: impl core::fmt::Display) -> Self {
+        Self::Invalid { key: key.into(), problem: problem.to_string() }
+    }
+}

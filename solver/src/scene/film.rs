@@ -23,16 +23,9 @@ pub struct Film {
     /// Film temperature, K; constant.
     pub temperature: f64,
     /// Largest loss factor η (tan δ) of the material; 0 for film without loss.
-    #[serde(default)]
     pub loss_factor: f64,
     /// Frequency of the largest loss factor, Hz.
-    #[serde(default = "default_loss_frequency")]
     pub loss_frequency: f64,
-}
-
-/// The frequency where a stored scene of physics version 4 or less names none; its loss factor is 0.
-fn default_loss_frequency() -> f64 {
-    100.0
 }
 
 impl Film {

@@ -1,5 +1,7 @@
 //! Settings of the tunnelling monitor, which detects film that passes through film.
 
+use crate::platform::random::hash;
+
 /// Settings of the tunnelling monitor.
 ///
 /// The monitor compares two frames that are `block` steps apart. In a random choice of blocks, the
@@ -20,13 +22,8 @@ impl MonitorSettings {
     /// Blocks of 128 steps, one in a hundred of them dense.
     pub const FRAMES: Self = Self { block: 128, dense_block_period: 100, seed: 0 };
 
-    /// Whether the block that starts after `steps` steps is dense. The choice is the hash `SplitMix64`
-    /// (G. L. Steele et al., "Fast splittable pseudorandom number generators", 2014) of seed and number.
+    /// Whether the block that starts after `steps` steps is dense.
     pub(crate) fn is_dense_block(&self, steps: u64) -> bool {
-        let mut z =
-            self.seed.wrapping_add(steps.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        (z ^ (z >> 31)).is_multiple_of(self.dense_block_period)
+        hash(self.seed, steps.wrapping_add(1)).is_multiple_of(self.dense_block_period)
     }
 }

@@ -83,7 +83,7 @@ impl Scene {
         let solver = &self.solver;
         positive("solver.end_time", solver.end_time, "s")?;
         if solver.step_limit == 0 {
-            return Err(invalid("solver.step_limit", "0 is not allowed; at least 1".to_owned()));
+            return Err(SceneError::invalid("solver.step_limit", "0 is not allowed; at least 1"));
         }
         match solver.stepping {
             Stepping::Adaptive(tolerance) => {
@@ -106,7 +106,7 @@ impl Scene {
         number(key, interval, few, "at least 1e-6 of solver.end_time")?;
         if self.outputs.frames > MAX_FRAMES {
             let problem = format!("{} is not allowed; at most {MAX_FRAMES}", self.outputs.frames);
-            return Err(invalid("outputs.frames", problem));
+            return Err(SceneError::invalid("outputs.frames", problem));
         }
         let thresholds = &self.outputs.thresholds;
         positive("outputs.thresholds.deployed_volume", thresholds.deployed_volume, "a ratio")?;
@@ -125,7 +125,7 @@ fn validate_support(index: usize, support: &Support) -> Result<(), SceneError> {
         "{:?} is not a list of displacement components; allowed: letters of \"xyz\" in that order",
         support.fix
     );
-    Err(invalid(&format!("supports[{index}].fix"), problem))
+    Err(SceneError::invalid(format!("supports[{index}].fix"), problem))
 }
 
 fn positive(key: &str, value: f64, unit: &str) -> Result<(), SceneError> {
@@ -144,12 +144,6 @@ fn number(
     valid: impl Fn(f64) -> bool,
     allowed: &str,
 ) -> Result<(), SceneError> {
-    if valid(value) {
-        return Ok(());
-    }
-    Err(invalid(key, format!("{value} is not allowed; {allowed}")))
-}
-
-fn invalid(key: &str, problem: String) -> SceneError {
-    SceneError::Invalid { key: key.to_owned(), problem }
+    let refused = || SceneError::invalid(key, format_args!("{value} is not allowed; {allowed}"));
+    valid(value).then_some(()).ok_or_else(refused)
 }

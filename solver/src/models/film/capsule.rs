@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::{imperfection, reference_gap};
+use super::imperfection;
+pub use super::reference_gap::{contact_distance, imperfection_amplitude};
 use crate::collision::contact::{Adhesion, ContactModel};
 use crate::geometry::field::Field;
 use crate::geometry::fold::{FoldDesign, FoldPattern};
@@ -40,30 +41,6 @@ pub fn imperfect(
         imperfection::imperfect(&mut mesh.positions, &reference, seed, amplitude);
     }
     Ok(amplitude)
-}
-
-/// Amplitude of the imperfection of a stowed capsule, m: the given one, or the default of the design;
-/// `None` for seed 0.
-pub fn imperfection_amplitude(
-    design: &FoldDesign,
-    seed: u64,
-    given: Option<f64>,
-) -> Result<Option<f64>, SceneError> {
-    if seed == 0 {
-        return Ok(None);
-    }
-    Ok(Some(match given {
-        Some(amplitude) => amplitude,
-        None => reference_gap::imperfection_amplitude(design)?,
-    }))
-}
-
-/// Contact distance of the capsule of a design, m: the given one, or the default of the design.
-pub fn contact_distance(given: Option<f64>, design: &FoldDesign) -> Result<f64, SceneError> {
-    match given {
-        Some(distance) => Ok(distance),
-        None => Ok(reference_gap::contact_distance(design)?),
-    }
 }
 
 /// Contact of the capsule of a design, with its [`contact_distance`].
@@ -165,12 +142,11 @@ pub fn constants(
 ) -> Result<(FilmSystem, SimulationSettings, GasState), SceneError> {
     let solver = &scene.solver;
     check_cfl(solver.cfl)?;
-    let invalid = |key: &str, problem: String| SceneError::Invalid { key: key.to_owned(), problem };
-    scene.shell.check().map_err(|error| invalid("mesh", error.to_string()))?;
+    scene.shell.check().map_err(|error| SceneError::invalid("mesh", error))?;
     let positions = Field::of(&scene.shell.positions);
     let supports = Supports::new(&scene.supports, &positions);
     let model = FilmModel::supported(&scene.film, &scene.shell, |node| supports.hold_fully(node))
-        .map_err(|error| invalid("mesh", error.to_string()))?;
+        .map_err(|error| SceneError::invalid("mesh", error))?;
     let (pressure_load, gas) = match &scene.filling {
         Filling::Pressure(pressure) => (PressureLoad::Overpressure(*pressure), GasState::default()),
         Filling::Gas { supply, initial_temperature } => {
@@ -233,7 +209,7 @@ fn check_integrator(kind: IntegratorKind, system: &FilmSystem) -> Result<(), Sce
     let Some(Refusal { unknown, allowed }) = entry.refusal(system) else { return Ok(()) };
     let name = entry.name;
     let problem = format!("{name} has no {unknown}; allowed: {allowed}, or explicit");
-    Err(SceneError::Invalid { key: "solver.integrator".to_owned(), problem })
+    Err(SceneError::invalid("solver.integrator", problem))
 }
 
 fn check_cfl(cfl: f64) -> Result<(), SceneError> {
@@ -241,5 +217,5 @@ fn check_cfl(cfl: f64) -> Result<(), SceneError> {
         return Ok(());
     }
     let problem = format!("{cfl} is not allowed; allowed: above 0, at most 1");
-    Err(SceneError::Invalid { key: "cfl".to_owned(), problem })
+    Err(SceneError::invalid("cfl", problem))
 }

@@ -13,6 +13,8 @@
 
 use nalgebra::Vector3;
 
+use crate::platform::random::{hash, unit};
+
 /// Number of waves in the field. Chosen.
 const WAVES: usize = 6;
 
@@ -31,14 +33,10 @@ pub fn imperfect(
     if !valid {
         return;
     }
-    let mut state = seed;
+    let mut drawn = 0;
     let mut draw = || {
-        // SplitMix64 (G. Steele, D. Lea, C. Flood, 2014); 53 bits to [0, 1).
-        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        drawn += 1;
+        unit(hash(seed, drawn))
     };
     let full_turn = 2.0 * core::f64::consts::PI;
     let waves: Vec<[f64; 4]> = (0..WAVES)

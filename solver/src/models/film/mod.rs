@@ -14,7 +14,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Cost, ModelEntry, ReferenceEntry};
+use super::Cost;
 use crate::geometry::field::Field;
 use crate::geometry::mesh::{Mesh, Part, Shape};
 use crate::integrators::{FilmSimulation, FilmView, StoredFilm};
@@ -48,16 +48,6 @@ pub use solve::{resume_scene, solve, solve_scene};
 pub use statics::{Erected, StaticState, erected, reference_scene, static_states};
 pub use tracks::{CONTACT as CONTACT_COLUMNS, FILM_STRESS_99};
 
-/// The entry in the table of models.
-pub(super) const ENTRY: ModelEntry = ModelEntry {
-    name: "film",
-    check,
-    cost,
-    reference: Some(ReferenceEntry { scene: reference_scene, ladder: Ladder::new }),
-    solve: solve_scene,
-    resume: Some(resume_scene),
-};
-
 /// Checks a scene for this model, as far as possible without its fold pattern.
 pub fn check(scene: &Scene) -> Result<(), SceneError> {
     scene.validate()?;
@@ -71,9 +61,8 @@ pub fn cost(scene: &Scene) -> Result<Cost, SceneError> {
     // Nothing runs here, and every instruction set gives the same bits.
     let instruction_set = InstructionSet::detect();
     let (film, _) = capsule::film_scene(instruction_set, scene, stowed, cfl_of(scene)?)?;
-    let model = FilmModel::of_shell(&film.film, &film.shell).map_err(|error| {
-        SceneError::Invalid { key: "design".to_owned(), problem: error.to_string() }
-    })?;
+    let model = FilmModel::of_shell(&film.film, &film.shell)
+        .map_err(|error| SceneError::invalid("design", error))?;
     let factor = damping::stable_share(scene.film.numerical_damping);
     let step = film.solver.cfl * factor * 2.0 / model.largest_frequency();
     let interval = scene.outputs.sample_interval;
@@ -86,10 +75,10 @@ pub fn cost(scene: &Scene) -> Result<Cost, SceneError> {
 fn cfl_of(scene: &Scene) -> Result<f64, SceneError> {
     match scene.solver.stepping {
         Stepping::Stable(cfl) => Ok(cfl),
-        Stepping::Adaptive(_) | Stepping::Fixed(_) => Err(SceneError::Invalid {
-            key: "solver.stepping".to_owned(),
-            problem: "model `film` steps by a CFL number; allowed: solver.cfl".to_owned(),
-        }),
+        Stepping::Adaptive(_) | Stepping::Fixed(_) => {
+            let problem = "model `film` steps by a CFL number; allowed: solver.cfl";
+            Err(SceneError::invalid("solver.stepping", problem))
+        }
     }
 }
 
@@ -166,10 +155,9 @@ impl FilmRun {
     ) -> Result<Self, SceneError> {
         let (mut system, settings, _) = capsule::constants(scene)?;
         system.supports.movers.extend(seating.iter().cloned());
-        let Some(film) = FilmSimulation::resume(system, settings, stored) else {
-            let problem = "the stored state belongs to another film".to_owned();
-            return Err(SceneError::Invalid { key: "mesh".to_owned(), problem });
-        };
+        let film = FilmSimulation::resume(system, settings, stored).ok_or_else(|| {
+            SceneError::invalid("mesh", "the stored state belongs to another film")
+        })?;
         Ok(Self::with(film, scene, rings))
     }
 

@@ -39,12 +39,20 @@ pub fn reference_gap(design: &FoldDesign) -> Result<f64, FoldError> {
     Ok(gap * f64::from(COMPUTED_SUBDIVISIONS) / f64::from(REFERENCE_SUBDIVISIONS))
 }
 
-/// Default contact distance of a capsule, m.
-pub fn contact_distance(design: &FoldDesign) -> Result<f64, FoldError> {
-    Ok(DISTANCE_PER_GAP * reference_gap(design)?)
+/// Contact distance of the capsule of a design, m: the given one, or the default of the design.
+pub fn contact_distance(given: Option<f64>, design: &FoldDesign) -> Result<f64, FoldError> {
+    given.map_or_else(|| Ok(DISTANCE_PER_GAP * reference_gap(design)?), Ok)
 }
 
-/// Default amplitude of the imperfection of a stowed capsule, m.
-pub fn imperfection_amplitude(design: &FoldDesign) -> Result<f64, FoldError> {
-    Ok(AMPLITUDE_PER_GAP * reference_gap(design)?)
+/// Amplitude of the imperfection of a stowed capsule, m: the given one, or the default of the design;
+/// `None` for seed 0.
+pub fn imperfection_amplitude(
+    design: &FoldDesign,
+    seed: u64,
+    given: Option<f64>,
+) -> Result<Option<f64>, FoldError> {
+    if seed == 0 || given.is_some() {
+        return Ok(given.filter(|_| seed != 0));
+    }
+    Ok(Some(AMPLITUDE_PER_GAP * reference_gap(design)?))
 }

@@ -3,7 +3,7 @@
 use super::{FilmRun, Rings, capsule, cfl_of};
 use crate::geometry::mesh::Shape;
 use crate::integrators::StoredFilm;
-use crate::models::run::{self, Observer, Run};
+use crate::models::run::{Observer, Run};
 use crate::models::{ResumeError, Stored};
 use crate::output::checkpoint::Checkpoint;
 use crate::output::outcome::Deployment;
@@ -21,15 +21,7 @@ pub fn solve(
     contact: Option<FilmContact>,
     observer: &mut dyn Observer,
 ) -> Result<Deployment, SceneError> {
-    let (film, rings) = stowed(instruction_set, scene, cfl, contact)?;
-    if !observer.prepares() {
-        return Ok(Deployment::cancelled());
-    }
-    let mut model = FilmRun::of(&film, Some(rings))?;
-    if !observer.prepares() {
-        return Ok(Deployment::cancelled());
-    }
-    Ok(run::run(&mut model, &Timeline::new(scene), observer))
+    complete(instruction_set, scene, (cfl, contact), None, observer)
 }
 
 /// Runs a scene with the contact and the CFL number of the scene.
@@ -38,8 +30,8 @@ pub fn solve_scene(
     scene: &Scene,
     observer: &mut dyn Observer,
 ) -> Result<Deployment, SceneError> {
-    let contact = FilmContact::of(&scene.contact);
-    solve(instruction_set, scene, cfl_of(scene)?, Some(contact), observer)
+    let how = (cfl_of(scene)?, Some(FilmContact::of(&scene.contact)));
+    complete(instruction_set, scene, how, None, observer)
 }
 
 /// Continues a run of [`solve_scene`] from its checkpoint.
@@ -49,17 +41,33 @@ pub fn resume_scene(
     stored: &Stored<'_>,
     observer: &mut dyn Observer,
 ) -> Result<Deployment, ResumeError> {
-    let checkpoint = Checkpoint::<StoredFilm, Run>::from_text(stored.text, stored.fingerprint)?;
-    let contact = FilmContact::of(&scene.contact);
-    let (film, rings) = stowed(instruction_set, scene, cfl_of(scene)?, Some(contact))?;
+    let checkpoint = Checkpoint::from_text(stored.text, stored.fingerprint)?;
+    let how = (cfl_of(scene)?, Some(FilmContact::of(&scene.contact)));
+    Ok(complete(instruction_set, scene, how, Some(checkpoint), observer)?)
+}
+
+/// A run at a CFL number with a contact, from time 0 or from a checkpoint.
+fn complete(
+    instruction_set: InstructionSet,
+    scene: &Scene,
+    (cfl, contact): (f64, Option<FilmContact>),
+    checkpoint: Option<Checkpoint<StoredFilm, Run>>,
+    observer: &mut dyn Observer,
+) -> Result<Deployment, SceneError> {
+    let (film, rings) = stowed(instruction_set, scene, cfl, contact)?;
     if !observer.prepares() {
         return Ok(Deployment::cancelled());
     }
-    let mut model = FilmRun::resume(&film, Some(rings), &[], checkpoint.state)?;
+    let (mut model, run) = match checkpoint {
+        None => (FilmRun::of(&film, Some(rings))?, Run::default()),
+        Some(Checkpoint { state, run, .. }) => {
+            (FilmRun::resume(&film, Some(rings), &[], state)?, run)
+        }
+    };
     if !observer.prepares() {
         return Ok(Deployment::cancelled());
     }
-    Ok(checkpoint.run.complete(&mut model, &Timeline::new(scene), observer))
+    Ok(run.complete(&mut model, &Timeline::new(scene), observer))
 }
 
 /// The stowed capsule of a scene, with this contact, as a film with rings. Contact without a distance has

@@ -73,9 +73,8 @@ pub fn erected(instruction_set: InstructionSet, scene: &Scene) -> Result<Erected
         Scene { film: Film { compression: 0.0, ..scene.film }, gravity: 0.0, ..scene.clone() };
     let (mut capsule, mesh) = film_scene(instruction_set, &reference, Shape::Erected, 1.0)?;
     capsule.filling = Filling::Pressure(0.0);
-    let invalid = |problem: String| SceneError::Invalid { key: "design".to_owned(), problem };
     let model = FilmModel::of_shell(&capsule.film.elastic(), &capsule.shell)
-        .map_err(|error| invalid(error.to_string()))?;
+        .map_err(|error| SceneError::invalid("design", error))?;
     let positions = Field::of(&capsule.shell.positions);
     let mut supports = Supports::new(&capsule.supports, &positions);
     if !capsule.supports.is_empty() {
@@ -172,10 +171,7 @@ pub fn static_states(
     overpressures: &[f64],
 ) -> Result<Vec<StaticState>, SceneError> {
     let mut capsule = erected(instruction_set, scene)?;
-    let no_equilibrium = |failure: StaticFailure| SceneError::Invalid {
-        key: "design".to_owned(),
-        problem: failure.to_string(),
-    };
+    let no_equilibrium = |failure: StaticFailure| SceneError::invalid("design", failure);
     overpressures.iter().map(|p| capsule.settle(*p).map_err(no_equilibrium)).collect()
 }
 

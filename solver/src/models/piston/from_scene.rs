@@ -10,19 +10,17 @@ use crate::scene::{Scene, SupportLocation};
 
 /// Checks the supports: the bottom is held along z and the top is free along z.
 pub(super) fn check_supports(scene: &Scene) -> Result<(), SceneError> {
-    let invalid =
-        |key: String, problem: &str| Err(SceneError::Invalid { key, problem: problem.to_owned() });
     let mut bottom_held = false;
     for (index, support) in scene.supports.iter().enumerate() {
         let along_z = support.fix.contains('z');
         match support.on {
             SupportLocation::BottomRing | SupportLocation::BottomCap => bottom_held |= along_z,
             SupportLocation::TopRing | SupportLocation::TopCap if along_z => {
-                return invalid(
+                return Err(SceneError::invalid(
                     format!("supports[{index}].fix"),
                     "model `piston` moves the top along z, so a support cannot hold it along z; \
                      allowed there: letters of \"xy\"",
-                );
+                ));
             }
             SupportLocation::TopRing | SupportLocation::TopCap => {}
         }
@@ -30,11 +28,11 @@ pub(super) fn check_supports(scene: &Scene) -> Result<(), SceneError> {
     if bottom_held {
         return Ok(());
     }
-    invalid(
-        "supports".to_owned(),
+    Err(SceneError::invalid(
+        "supports",
         "model `piston` needs a fixed bottom; allowed: at least one support on bottom_ring or \
          bottom_cap that fixes z",
-    )
+    ))
 }
 
 /// The piston of a valid scene, stowed, with its gas at time 0.
@@ -44,10 +42,8 @@ pub(super) fn build(scene: &Scene, pattern: &FoldPattern) -> Result<PistonRun, S
     let stowed_height = scene.design.stowed_height;
     let stowed = (stowed_height, pattern.stowed_volume(stowed_height));
     let erected = (pattern.height, pattern.erected_volume());
-    let stroke = Stroke::new(stowed, erected).map_err(|problem| SceneError::Invalid {
-        key: "design.stowed_height".to_owned(),
-        problem,
-    })?;
+    let stroke = Stroke::new(stowed, erected)
+        .map_err(|problem| SceneError::invalid("design.stowed_height", problem))?;
     let end = EndFilm::of_cone(
         (pattern.bottom_radius, pattern.top_radius),
         pattern.height,

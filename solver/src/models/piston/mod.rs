@@ -24,7 +24,6 @@
 //! twist, radial motion and the loss in opening folds. Read both as upper bounds. A piston deploys
 //! whenever it has enough gas, so its verdict says nothing of locking.
 
-use super::{Cost, ModelEntry};
 use crate::geometry::fold::FoldPattern;
 use crate::models::run::{self, Observer};
 use crate::output::outcome::Deployment;
@@ -43,16 +42,6 @@ pub use mass::MovingMass;
 pub use motion::{Motion, Piston, PistonRun, PistonState};
 pub use volume::{Stroke, VolumeLaw};
 
-/// The entry in the table of models. The piston has no vector code, and static equilibria in closed form.
-pub(super) const ENTRY: ModelEntry = ModelEntry {
-    name: "piston",
-    check,
-    cost: |_| Ok(Cost { elements: 0, steps: 0 }),
-    reference: None,
-    solve: |_, scene, observer| solve(scene, observer),
-    resume: None,
-};
-
 /// Runs a scene as a piston.
 pub fn solve(scene: &Scene, observer: &mut dyn Observer) -> Result<Deployment, SceneError> {
     let mut run = PistonRun::from_scene(scene)?;
@@ -60,14 +49,11 @@ pub fn solve(scene: &Scene, observer: &mut dyn Observer) -> Result<Deployment, S
 }
 
 /// Checks a scene, its stepping and its supports for this model.
-fn check(scene: &Scene) -> Result<(), SceneError> {
+pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
     scene.validate()?;
     if let Stepping::Stable(_) = scene.solver.stepping {
-        return Err(SceneError::Invalid {
-            key: "solver.cfl".to_owned(),
-            problem: "model `piston` has no stable step; allowed: adaptive or fixed stepping"
-                .to_owned(),
-        });
+        let problem = "model `piston` has no stable step; allowed: adaptive or fixed stepping";
+        return Err(SceneError::invalid("solver.cfl", problem));
     }
     from_scene::check_supports(scene)
 }

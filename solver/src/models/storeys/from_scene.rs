@@ -15,6 +15,7 @@ use super::strip::Strip;
 use super::{STRIPS, StoreysRun, UNRESOLVED_LOSS};
 use crate::geometry::fold::{Caps, FoldPattern};
 use crate::mechanics::gas::Gas;
+use crate::platform::random::{hash, unit};
 use crate::platform::simd::InstructionSet;
 use crate::scene::error::SceneError;
 use crate::scene::{Scene, Stepping, SupportLocation};
@@ -22,20 +23,16 @@ use crate::scene::{Scene, Stepping, SupportLocation};
 /// Default amplitude over the stowed height. Chosen: that of the film on the paper's capsule, 0.158 of 40 mm.
 const AMPLITUDE_FRACTION: f64 = 4e-3;
 
-fn invalid(key: &str, problem: &str) -> SceneError {
-    SceneError::Invalid { key: key.to_owned(), problem: problem.to_owned() }
-}
-
 /// Checks a scene, its stepping and its supports for this model.
-pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
+pub(in crate::models) fn check(scene: &Scene) -> Result<(), SceneError> {
     scene.validate()?;
     if !matches!(scene.solver.stepping, Stepping::Stable(_)) {
         let problem = "model `storeys` takes a fraction of its stable step; allowed: a CFL number";
-        return Err(invalid("solver.stepping", problem));
+        return Err(SceneError::invalid("solver.stepping", problem));
     }
     if scene.design.caps != Caps::Polygon {
         let problem = "model `storeys` starts folded; allowed: polygon caps";
-        return Err(invalid("design.caps", problem));
+        return Err(SceneError::invalid("design.caps", problem));
     }
     let mut held = false;
     for (index, support) in scene.supports.iter().enumerate() {
@@ -43,7 +40,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
         if support.on != SupportLocation::BottomRing || !all {
             let problem = "model `storeys` holds its whole bottom ring and nothing else; allowed: \
                            bottom_ring with \"xyz\"";
-            return Err(invalid(&format!("supports[{index}]"), problem));
+            return Err(SceneError::invalid(format!("supports[{index}]"), problem));
         }
         held = true;
     }
@@ -52,7 +49,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
     }
     let problem = "model `storeys` needs a fixed bottom; allowed: a support on bottom_ring that \
                    fixes \"xyz\"";
-    Err(invalid("supports", problem))
+    Err(SceneError::invalid("supports", problem))
 }
 
 /// The storeys of a checked scene, stowed, with their gas at time 0.
@@ -87,17 +84,9 @@ pub(super) fn build(
 
 /// Stretches each strip along z by its own share of `fraction`.
 fn perturb(positions: &mut Nodes, fraction: f64, seed: u64) {
-    let mut state = seed;
-    let mut factors = [1.0; STRIPS];
-    for factor in &mut factors {
-        // SplitMix64 (G. Steele, D. Lea, C. Flood, 2014); 53 bits to [0, 1).
-        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        let draw = ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64;
-        *factor += fraction * (2.0 * draw - 1.0);
-    }
+    let draw = |strip: u64| unit(hash(seed, strip + 1));
+    let factors: [f64; STRIPS] =
+        core::array::from_fn(|strip| 1.0 + fraction * (2.0 * draw(strip as u64) - 1.0));
     for [_, _, z] in positions {
         for (value, factor) in z.0.iter_mut().zip(factors) {
             *value *= factor;

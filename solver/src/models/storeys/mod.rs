@@ -17,7 +17,6 @@
 //! no friction, no adhesion, and film that falls back passes through film; no compression, so the model
 //! cannot lock. The loss of motion within a ring is a multiple of the film's ([`UNRESOLVED_LOSS`]).
 
-use super::{Cost, ModelEntry};
 use crate::geometry::fold::FoldPattern;
 use crate::models::run::{self, Observer};
 use crate::output::outcome::Deployment;
@@ -26,7 +25,7 @@ use crate::scene::Scene;
 use crate::scene::error::SceneError;
 use crate::scene::timeline::Timeline;
 
-mod from_scene;
+pub(super) mod from_scene;
 mod kernel;
 mod motion;
 mod rest;
@@ -41,16 +40,6 @@ pub const STRIPS: usize = WIDTH;
 /// 15 designs (docs/theory/storeys.md). The film loses energy in vibrations of its facets, which a strip does
 /// not have.
 pub const UNRESOLVED_LOSS: f64 = 2.9;
-
-/// The entry in the table of models. Static shapes are those of the strips, found after each run.
-pub(super) const ENTRY: ModelEntry = ModelEntry {
-    name: "storeys",
-    check: from_scene::check,
-    cost: |_| Ok(Cost { elements: 0, steps: 0 }),
-    reference: None,
-    solve,
-    resume: None,
-};
 
 /// Runs a scene as storeys.
 pub fn solve(
