@@ -8,7 +8,6 @@ use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::mechanics::forces::tangent::{self, Stiffness};
 use billow_solver::mechanics::gas::GasState;
 use billow_solver::mechanics::material::Regime;
-use billow_solver::mechanics::supports::Supports;
 use billow_solver::models::film::erected;
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::Film;
@@ -17,7 +16,7 @@ use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
 use billow_solver::scene::motion::{Motion, Profile};
 use billow_solver::scene::paper::free_film;
 use billow_solver::statics::{
-    Loaded, Relaxation, StaticError, StaticFailureKind, Tolerances, equilibrium, solve_unobserved,
+    Relaxation, StaticError, StaticFailureKind, Tolerances, equilibrium, solve_unobserved,
 };
 use billow_solver::system::{FilmSystem, PressureLoad};
 use nalgebra::{SVector, Vector2, Vector3};
@@ -211,14 +210,7 @@ fn unsupported_film_under_gravity_has_no_equilibrium() {
 fn an_observer_can_stop_the_solution() {
     let piece = icosphere(1, 0.5);
     let model = model(&piece, &Film::PAPER_ELASTIC);
-    let supports = Supports::none(piece.positions.len());
-    let loaded = Loaded {
-        model: &model,
-        supports: &supports,
-        overpressure: 100.0,
-        gravity: Vector3::zeros(),
-        instruction_set: InstructionSet::detect(),
-    };
+    let film = FilmSystem::free(model, PressureLoad::Overpressure(100.0));
     let mut calls = 0;
     let stop = &mut |_: &_| {
         calls += 1;
@@ -228,7 +220,7 @@ fn an_observer_can_stop_the_solution() {
             std::ops::ControlFlow::Continue(())
         }
     };
-    let ended = equilibrium(&loaded, Field::of(&piece.positions), &Tolerances::default(), stop);
+    let ended = equilibrium(&film, Field::of(&piece.positions), &Tolerances::default(), stop);
     assert_eq!(ended.unwrap_err().kind, StaticFailureKind::Stopped);
 }
 
@@ -238,16 +230,12 @@ fn a_static_state_has_the_same_bits_on_every_instruction_set() {
     scene.design.subdivisions = 2;
     let capsule = erected(InstructionSet::detect(), &scene).unwrap();
     let states = InstructionSet::ALL.map(|instruction_set| {
-        let loaded = Loaded {
-            model: &capsule.model,
-            supports: &Supports::none(capsule.model.nodes()),
-            overpressure: 1000.0,
-            gravity: Vector3::zeros(),
-            instruction_set,
-        };
+        let load = PressureLoad::Overpressure(1000.0);
+        let free = FilmSystem::free(capsule.model.clone(), load);
+        let film = FilmSystem { instruction_set, ..free };
         let go_on = &mut |_: &_| std::ops::ControlFlow::Continue(());
         let rest =
-            equilibrium(&loaded, capsule.positions.clone(), &Tolerances::default(), go_on).unwrap();
+            equilibrium(&film, capsule.positions.clone(), &Tolerances::default(), go_on).unwrap();
         rest.positions
     });
     assert!(states.iter().all(|state| *state == states[0]));

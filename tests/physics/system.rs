@@ -10,7 +10,7 @@ use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::plate::Plate;
 use billow_solver::scene::{Film, GasSupply, HeatTransfer};
 use billow_solver::system::{Evaluation, FilmState, FilmSystem, Workspace};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::film_rig::{INFLOW, free, stowed};
 use crate::rig::paper_scene;
@@ -152,10 +152,17 @@ fn the_stiffness_is_minus_the_slope_of_the_forces() {
         let evaluation = system.evaluate(state, &positions, state.time, &mut workspace);
         let mut product = vec![Vector3::zeros(); directions.len()];
         let at_now = (&positions, state.time);
-        let gas = system.stiffness(state, at_now, &evaluation, &workspace, &mut |[a, b], block| {
+        let mut add = |[a, b]: [u32; 2], block: &Matrix3<f64>| {
             product[a as usize] += block * directions[b as usize];
-        });
-        if let Some(gas) = gas {
+        };
+        let overpressure = system.overpressure_at(evaluation.gas_pressure);
+        for (nodes, stiffness) in system.face_stiffness(&state.creep, &positions, overpressure) {
+            for (i, j) in (0..9).map(|k| (k / 3, k % 3)) {
+                add([nodes[i], nodes[j]], &stiffness.fixed_view::<3, 3>(3 * i, 3 * j).into());
+            }
+        }
+        system.pair_stiffness(at_now, &workspace, &mut add);
+        if let Some(gas) = system.gas_stiffness(&evaluation, &workspace) {
             let rate: f64 = gas.gradient.iter().zip(&directions).map(|(g, u)| g.dot(u)).sum();
             for (sum, gradient) in product.iter_mut().zip(gas.gradient.iter()) {
                 *sum += gradient * (gas.factor * rate);

@@ -51,6 +51,11 @@ fn free_directions(projector: &Matrix3<f64>) -> Vec<Vector3<f64>> {
     found
 }
 
+/// Scalar product of two vectors along the unknowns.
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
 impl Unknowns {
     /// The unknowns of a film with these supports.
     pub fn new(model: &FilmModel, supports: &Supports) -> Self {

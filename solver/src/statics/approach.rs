@@ -17,12 +17,12 @@
 
 use nalgebra::Vector3;
 
+use super::equations::Equations;
 use super::newton::{
-    Equilibrium, FIRST_SHIFT, IterationObserver, Loaded, NEAR_SHIFT, StaticFailure,
-    StaticFailureKind, Tolerances, equilibrium_of, extent, tensile_stiffness,
+    Equilibrium, FIRST_SHIFT, IterationObserver, NEAR_SHIFT, NewtonSearch, StaticFailure,
+    StaticFailureKind, Tolerances, extent, tensile_stiffness,
 };
 use super::relaxation::Relaxation;
-use super::system::System;
 use crate::geometry::field::Field;
 use crate::integrators::{FilmSimulation, SimulationSettings};
 use crate::mechanics::film_model::FilmModel;
@@ -61,32 +61,31 @@ const RELAXATION_STEPS: u64 = 20_000;
 /// Tolerances of intermediate equilibria. Chosen.
 const INTERMEDIATE: Tolerances = Tolerances { residual: 1e-3, step: 1e-3, iterations: 80 };
 
-/// Finds the static equilibrium under this load from these positions (m), with moving supports at the
+/// Finds the static equilibrium of film under its fixed overpressure from these positions (m), with moving supports at the
 /// end of their motion. `from` (Pa): the overpressure at which the positions already are an equilibrium,
 /// if they are; the continuation starts there.
 pub fn settle(
-    loaded: &Loaded<'_>,
+    film: &FilmSystem,
     positions: &Field,
     from: Option<f64>,
     tolerances: &Tolerances,
     observer: IterationObserver<'_>,
 ) -> Result<Equilibrium, StaticFailure> {
     let mut continuation = Continuation {
-        loaded,
-        system: System::new(loaded.model, loaded.supports, positions),
+        film,
+        equations: Equations::new(film, positions),
         tolerances,
         observer,
         iterations: 0,
-        factorisations: 0,
     };
-    let stages = stages(loaded, positions, from);
-    if let Some(before) = short_path(loaded, positions, from, stages[0]) {
+    let stages = stages(film, positions, from);
+    if let Some(before) = short_path(film, positions, from, stages[0]) {
         match continuation.run_short(positions, &before) {
             Err(failure) if failure.kind != StaticFailureKind::Stopped => {}
             ended => return ended,
         }
     }
-    let moves = !loaded.supports.movers.is_empty();
+    let moves = !film.supports.movers.is_empty();
     let attempts = if moves { &MOTION_PARTS[..] } else { &MOTION_PARTS[..1] };
     let mut last = None;
     for parts in attempts {
@@ -108,11 +107,19 @@ struct Stage {
     compression: f64,
 }
 
+impl Stage {
+    /// The load of film, which is fixed.
+    fn of(film: &FilmSystem) -> Self {
+        let overpressure = film.overpressure_at(f64::NAN);
+        Self { overpressure, compression: film.model.material.compression }
+    }
+}
+
 /// The loads of the continuation; the final one is last.
-fn stages(loaded: &Loaded<'_>, positions: &Field, from: Option<f64>) -> Vec<Stage> {
-    let unit = tensile_stiffness(loaded.model) / extent(positions);
-    let (pressure, compression) = (loaded.overpressure, loaded.model.material.compression);
-    let last = Stage { overpressure: pressure, compression };
+fn stages(film: &FilmSystem, positions: &Field, from: Option<f64>) -> Vec<Stage> {
+    let unit = tensile_stiffness(&film.model) / extent(positions);
+    let last = Stage::of(film);
+    let Stage { overpressure: pressure, compression } = last;
     if pressure == 0.0 {
         return vec![last];
     }
@@ -123,7 +130,7 @@ fn stages(loaded: &Loaded<'_>, positions: &Field, from: Option<f64>) -> Vec<Stag
         Stage { overpressure, compression }
     };
     let first_load =
-        if fullness(loaded.model, positions) > MIN_FULLNESS { FIRST_LOAD_FULL } else { FIRST_LOAD };
+        if fullness(&film.model, positions) > MIN_FULLNESS { FIRST_LOAD_FULL } else { FIRST_LOAD };
     let first = from.map_or(first_load * unit, f64::abs);
     let ratio = (first / pressure.abs()).max(1.0);
     let count = (libm::log(ratio) / libm::log(MAX_PRESSURE_RATIO)).ceil();
@@ -141,16 +148,17 @@ fn stages(loaded: &Loaded<'_>, positions: &Field, from: Option<f64>) -> Vec<Stag
 /// The loads before the last of a path in one step: the first stage, or none from a known equilibrium.
 /// `None` if the pressure is too far away, or the film neither known nor full.
 fn short_path(
-    loaded: &Loaded<'_>,
+    film: &FilmSystem,
     positions: &Field,
     from: Option<f64>,
     first: Stage,
 ) -> Option<Vec<Stage>> {
-    let near = |pressure: f64| pressure.abs() <= MAX_DIRECT_RATIO * loaded.overpressure.abs();
+    let limit = MAX_DIRECT_RATIO * Stage::of(film).overpressure.abs();
+    let near = |pressure: f64| pressure.abs() <= limit;
     if let Some(from) = from {
         return near(from).then(Vec::new);
     }
-    let full = fullness(loaded.model, positions) > MIN_FULLNESS;
+    let full = fullness(&film.model, positions) > MIN_FULLNESS;
     (full && near(first.overpressure)).then(|| vec![first])
 }
 
@@ -164,12 +172,11 @@ fn fullness(model: &FilmModel, positions: &Field) -> f64 {
 
 /// A continuation in progress.
 struct Continuation<'a, 'b> {
-    loaded: &'a Loaded<'a>,
-    system: System,
+    film: &'a FilmSystem,
+    equations: Equations,
     tolerances: &'a Tolerances,
     observer: IterationObserver<'b>,
     iterations: u32,
-    factorisations: u32,
 }
 
 impl Continuation<'_, '_> {
@@ -180,20 +187,14 @@ impl Continuation<'_, '_> {
         before: &[Stage],
     ) -> Result<Equilibrium, StaticFailure> {
         let mut positions = positions.clone();
-        move_held(self.loaded.supports, &mut positions, 1.0);
+        move_held(&self.film.supports, &mut positions, 1.0);
         for stage in before {
             positions = self.approach(positions, *stage, FIRST_SHIFT)?;
         }
         let limit = self.tolerances.iterations.min(DIRECT_ITERATIONS);
         let tolerances = Tolerances { iterations: limit, ..*self.tolerances };
-        let found = self.equilibrium(positions, self.final_load(), NEAR_SHIFT, &tolerances);
+        let found = self.equilibrium(positions, Stage::of(self.film), NEAR_SHIFT, &tolerances);
         self.counted(found)
-    }
-
-    /// The load asked for.
-    fn final_load(&self) -> Stage {
-        let Loaded { model, overpressure, .. } = *self.loaded;
-        Stage { overpressure, compression: model.material.compression }
     }
 
     /// Moves held nodes in `parts`, then follows the loads.
@@ -205,7 +206,7 @@ impl Continuation<'_, '_> {
     ) -> Result<Equilibrium, StaticFailure> {
         let mut positions = positions.clone();
         for part in 1..=parts {
-            move_held(self.loaded.supports, &mut positions, f64::from(part) / f64::from(parts));
+            move_held(&self.film.supports, &mut positions, f64::from(part) / f64::from(parts));
             if part < parts {
                 positions = self.approach(positions, stages[0], FIRST_SHIFT)?;
             }
@@ -217,7 +218,7 @@ impl Continuation<'_, '_> {
             shift = NEAR_SHIFT;
         }
         let found = match self.equilibrium(positions, *last, shift, self.tolerances) {
-            Err(failure) if !is_final(&failure) => match relaxed(self.loaded, &failure.positions) {
+            Err(failure) if !is_final(&failure) => match relaxed(self.film, &failure.positions) {
                 Some(positions) => self.equilibrium(positions, *last, FIRST_SHIFT, self.tolerances),
                 None => Err(failure),
             },
@@ -226,15 +227,15 @@ impl Continuation<'_, '_> {
         self.counted(found)
     }
 
-    /// A result with the numbers of steps and factorisations of the whole search.
+    /// A result with the number of steps of the whole search.
     fn counted(
         &self,
         found: Result<Equilibrium, StaticFailure>,
     ) -> Result<Equilibrium, StaticFailure> {
-        let Self { iterations, factorisations, .. } = *self;
+        let iterations = self.iterations;
         match found {
-            Ok(found) => Ok(Equilibrium { iterations, factorisations, ..found }),
-            Err(failure) => Err(StaticFailure { iterations, factorisations, ..failure }),
+            Ok(found) => Ok(Equilibrium { iterations, ..found }),
+            Err(failure) => Err(StaticFailure { iterations, ..failure }),
         }
     }
 
@@ -252,7 +253,7 @@ impl Continuation<'_, '_> {
         }
     }
 
-    /// The equilibrium of one load. Counts its steps and factorisations.
+    /// The equilibrium of one load. Counts its steps.
     fn equilibrium(
         &mut self,
         positions: Field,
@@ -260,26 +261,18 @@ impl Continuation<'_, '_> {
         shift: f64,
         tolerances: &Tolerances,
     ) -> Result<Equilibrium, StaticFailure> {
-        let mut model = self.loaded.model.clone();
-        model.material.compression = stage.compression;
-        let loaded = Loaded { model: &model, overpressure: stage.overpressure, ..*self.loaded };
+        let mut film = self.film.clone();
+        film.pressure_load = PressureLoad::Overpressure(stage.overpressure);
+        film.model.material.compression = stage.compression;
         let remaining = SEARCH_ITERATIONS.saturating_sub(self.iterations);
         let tolerances =
             &Tolerances { iterations: tolerances.iterations.min(remaining), ..*tolerances };
-        let found = equilibrium_of(
-            &mut self.system,
-            &loaded,
-            positions,
-            shift,
-            tolerances,
-            &mut *self.observer,
-        );
-        let (iterations, factorisations) = match &found {
-            Ok(found) => (found.iterations, found.factorisations),
-            Err(failure) => (failure.iterations, failure.factorisations),
+        let mut search = NewtonSearch::new(&film, &mut self.equations, positions);
+        let found = search.run(shift, tolerances, &mut *self.observer);
+        self.iterations += match &found {
+            Ok(found) => found.iterations,
+            Err(failure) => failure.iterations,
         };
-        self.iterations += iterations;
-        self.factorisations += factorisations;
         found
     }
 }
@@ -303,25 +296,19 @@ fn move_held(supports: &Supports, positions: &mut Field, fraction: f64) {
 }
 
 /// Positions after a damped motion from these (m); `None` if they are not finite.
-fn relaxed(loaded: &Loaded<'_>, positions: &Field) -> Option<Field> {
-    let mut supports = loaded.supports.clone();
+fn relaxed(film: &FilmSystem, positions: &Field) -> Option<Field> {
+    let mut system = film.clone();
     // Moving supports are at the end of their motion.
-    supports.movers.clear();
-    let load = PressureLoad::Overpressure(loaded.overpressure);
-    let system = FilmSystem {
-        supports,
-        gravity: loaded.gravity,
-        instruction_set: loaded.instruction_set,
-        ..FilmSystem::free(loaded.model.clone(), load)
-    };
+    system.supports.movers.clear();
     let settings =
         SimulationSettings { cfl: Relaxation::default().cfl, ..SimulationSettings::default() };
-    let at_rest = Field::zeros(loaded.model.nodes());
+    let at_rest = Field::zeros(film.model.nodes());
+    let overpressure = Stage::of(film).overpressure;
     let film =
         FilmSimulation::new(system, settings, positions.clone(), at_rest, GasState::default());
     let relaxation = Relaxation { step_limit: RELAXATION_STEPS, ..Relaxation::default() };
     // An unfinished relaxation is a good start too, as long as it is finite.
-    let film = match relaxation.relax_at(film, loaded.overpressure) {
+    let film = match relaxation.relax_at(film, overpressure) {
         Ok(film) => film,
         Err(unsettled) => unsettled.film,
     };

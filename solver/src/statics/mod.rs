@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Symbols: p overpressure, V enclosed volume; F the constant force on a rigid plane, s its travel.
-//! [`solve`] takes a scene; [`settle`] takes film with its load and any start; [`equilibrium`] is Newton's
+//! [`solve`] takes a scene; [`settle`] takes a system and any start; [`equilibrium`] is Newton's
 //! method alone; [`Relaxation`] is damped motion, slower but more robust. Each ends with a state whose
 //! residual is small compared with the load, or with a typed failure.
 
@@ -21,16 +21,17 @@ use crate::mechanics::forces::membrane::strain_energy;
 use crate::mechanics::supports::Supports;
 use crate::scene::film_scene::{Filling, FilmScene};
 use crate::scene::film_support::FilmSupport;
+use crate::system::{FilmSystem, PressureLoad};
 
 mod approach;
+mod equations;
 mod newton;
 mod relaxation;
-mod system;
 
 pub use approach::settle;
 pub use newton::{
-    Equilibrium, Iteration, IterationObserver, Loaded, StaticFailure, StaticFailureKind,
-    Tolerances, equilibrium,
+    Equilibrium, Iteration, IterationObserver, StaticFailure, StaticFailureKind, Tolerances,
+    equilibrium,
 };
 pub use relaxation::{Relaxation, Unsettled};
 
@@ -108,16 +109,16 @@ pub fn solve_from(
     let model = FilmModel::supported(&scene.film.elastic(), &scene.shell, |node| {
         supports.hold_fully(node)
     })?;
-    let loaded = Loaded {
-        model: &model,
-        supports: &supports,
-        overpressure,
+    let film = FilmSystem {
+        supports,
         gravity: scene.gravity,
         instruction_set: scene.solver.instruction_set,
+        ..FilmSystem::free(model, PressureLoad::Overpressure(overpressure))
     };
     let (positions, from) =
         known.map_or((&start, None), |(state, pressure)| (&state.positions, Some(pressure)));
-    let equilibrium = settle(&loaded, positions, from, &Tolerances::default(), observer)?;
+    let equilibrium = settle(&film, positions, from, &Tolerances::default(), observer)?;
+    let FilmSystem { model, supports, .. } = film;
     let strain = strain_energy(&model, &equilibrium.positions);
     let volume = scene.shell.volume(|node| equilibrium.positions.get(node as usize));
     let gravity_work: f64 = model

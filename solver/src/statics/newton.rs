@@ -15,29 +15,14 @@ use core::ops::ControlFlow;
 
 use nalgebra::Vector3;
 
-use super::system::System;
+use super::equations::Equations;
+use crate::factorisation::unknowns::dot;
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::membrane::{ElementHistory, NodeForces, assemble_conservative};
 use crate::mechanics::forces::pressure::add_closure;
 use crate::mechanics::resultants::thickness;
-use crate::mechanics::supports::Supports;
-use crate::platform::simd::InstructionSet;
-
-/// Film with its supports and loads.
-#[derive(Debug, Clone, Copy)]
-pub struct Loaded<'a> {
-    /// The film.
-    pub model: &'a FilmModel,
-    /// Supports. Movers hold their nodes at the present positions; they move nothing here.
-    pub supports: &'a Supports,
-    /// Overpressure, Pa.
-    pub overpressure: f64,
-    /// Acceleration of gravity, m/s².
-    pub gravity: Vector3<f64>,
-    /// Instruction set. Every one gives the same bits.
-    pub instruction_set: InstructionSet,
-}
+use crate::system::FilmSystem;
 
 /// Tolerances of an equilibrium, and the limit of steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -106,8 +91,6 @@ pub struct StaticFailure {
     pub node: usize,
     /// Steps taken.
     pub iterations: u32,
-    /// Factorisations computed, those of matrices that are not positive definite included.
-    pub factorisations: u32,
     /// Last positions of the nodes, m: not a result, but a start for another attempt.
     pub positions: Box<Field>,
 }
@@ -121,8 +104,6 @@ pub struct Equilibrium {
     pub forces: Field,
     /// Steps taken.
     pub iterations: u32,
-    /// Factorisations computed, those of matrices that are not positive definite included.
-    pub factorisations: u32,
     /// Residual force over the load, a fraction.
     pub residual: f64,
     /// μ of the last step.
@@ -146,36 +127,27 @@ const MAX_LINE_SEARCH_ITERATIONS: u32 = 40;
 /// Upper bound of the slope after a line search over the slope at its start. Chosen.
 const MAX_SLOPE_RATIO: f64 = 0.5;
 
-/// Finds a static equilibrium by descent from these positions (m). Held nodes do not move.
+/// Finds a static equilibrium of film under its fixed overpressure by descent from these positions (m). Held nodes
+/// do not move; movers hold theirs at the present positions.
 ///
 /// # Errors
 /// [`StaticFailure`] if none is found: positions outside the tolerances are never a result.
 pub fn equilibrium(
-    loaded: &Loaded<'_>,
+    film: &FilmSystem,
     positions: Field,
     tolerances: &Tolerances,
     observer: IterationObserver<'_>,
 ) -> Result<Equilibrium, StaticFailure> {
-    let mut system = System::new(loaded.model, loaded.supports, &positions);
-    equilibrium_of(&mut system, loaded, positions, FIRST_SHIFT, tolerances, observer)
-}
-
-/// [`equilibrium`] with a system of equations that serves several loads. `shift` is μ of the first step.
-pub(super) fn equilibrium_of(
-    system: &mut System,
-    loaded: &Loaded<'_>,
-    positions: Field,
-    shift: f64,
-    tolerances: &Tolerances,
-    observer: IterationObserver<'_>,
-) -> Result<Equilibrium, StaticFailure> {
-    NewtonSearch::new(loaded, system, positions).run(shift, tolerances, observer)
+    let mut equations = Equations::new(film, &positions);
+    NewtonSearch::new(film, &mut equations, positions).run(FIRST_SHIFT, tolerances, observer)
 }
 
 /// A search in progress.
-struct NewtonSearch<'a> {
-    loaded: &'a Loaded<'a>,
-    system: &'a mut System,
+pub(super) struct NewtonSearch<'a> {
+    film: &'a FilmSystem,
+    equations: &'a mut Equations,
+    /// p, Pa; NaN for film with gas.
+    overpressure: f64,
     positions: Field,
     /// Scratch: trial positions, element histories, node forces.
     trial: Field,
@@ -185,15 +157,20 @@ struct NewtonSearch<'a> {
     forces: Field,
     along: Vec<f64>,
     iterations: u32,
-    factorisations: u32,
 }
 
 impl<'a> NewtonSearch<'a> {
-    fn new(loaded: &'a Loaded<'a>, system: &'a mut System, positions: Field) -> Self {
-        let model = loaded.model;
+    /// A search of film from these positions (m). `equations` serve any load of it.
+    pub(super) fn new(
+        film: &'a FilmSystem,
+        equations: &'a mut Equations,
+        positions: Field,
+    ) -> Self {
+        let model = &film.model;
         Self {
-            loaded,
-            system,
+            film,
+            equations,
+            overpressure: film.overpressure_at(f64::NAN),
             trial: positions.clone(),
             positions,
             element_history: ElementHistory::zero(model),
@@ -201,7 +178,6 @@ impl<'a> NewtonSearch<'a> {
             forces: Field::zeros(model.nodes()),
             along: Vec::new(),
             iterations: 0,
-            factorisations: 0,
         }
     }
 
@@ -209,12 +185,12 @@ impl<'a> NewtonSearch<'a> {
     fn evaluate(&mut self, step: &[f64], fraction: f64) {
         self.trial.clone_from(&self.positions);
         if !step.is_empty() {
-            self.system.unknowns.shift(&mut self.trial, step, fraction);
+            self.equations.unknowns.shift(&mut self.trial, step, fraction);
         }
-        let Loaded { model, overpressure, gravity, instruction_set, .. } = *self.loaded;
+        let model = &self.film.model;
         model.closure_nodes.place(&mut self.trial);
         let _ = assemble_conservative(
-            instruction_set,
+            self.film.instruction_set,
             model,
             &self.trial,
             &[],
@@ -223,20 +199,17 @@ impl<'a> NewtonSearch<'a> {
         );
         let _ = add_closure(model, &self.trial, &mut self.nodes);
         for node in 0..model.nodes() {
-            let force = self.nodes.film(node)
-                + self.nodes.area(node) * overpressure
-                + gravity * model.mass[node];
-            self.forces.set(node, force);
+            self.forces.set(node, self.film.node_force(&self.nodes, self.overpressure, node));
         }
-        self.along = self.system.unknowns.gather(&self.forces);
+        self.along = self.equations.unknowns.gather(&self.forces);
     }
 
     /// Norm of the load, N: pressure, weight, forces on planes and support forces.
     fn load(&self) -> f64 {
-        let Loaded { model, overpressure, gravity, supports, .. } = *self.loaded;
-        let mut sum: f64 = self.system.unknowns.force.iter().map(|force| force * force).sum();
+        let FilmSystem { model, supports, gravity, .. } = self.film;
+        let mut sum: f64 = self.equations.unknowns.force.iter().map(|force| force * force).sum();
         for node in 0..model.nodes() {
-            let pressure = self.nodes.area(node) * overpressure;
+            let pressure = self.nodes.area(node) * self.overpressure;
             let force = self.forces.get(node);
             let support = force - supports.projector(node) * force;
             sum += pressure.norm_squared() + support.norm_squared();
@@ -255,7 +228,7 @@ impl<'a> NewtonSearch<'a> {
 
     fn failure(&self, kind: StaticFailureKind) -> StaticFailure {
         let size = |node: usize| {
-            let moves = self.system.unknowns.of_node[node].iter();
+            let moves = self.equations.unknowns.of_node[node].iter();
             let squares = moves.map(|(unknown, _)| self.along[*unknown as usize]);
             squares.map(|force| force * force).sum::<f64>()
         };
@@ -268,12 +241,12 @@ impl<'a> NewtonSearch<'a> {
             residual: self.residual(),
             node,
             iterations: self.iterations,
-            factorisations: self.factorisations,
             positions: Box::new(self.positions.clone()),
         }
     }
 
-    fn run(
+    /// Runs the search. `first_shift` is μ of the first step.
+    pub(super) fn run(
         &mut self,
         first_shift: f64,
         tolerances: &Tolerances,
@@ -295,7 +268,7 @@ impl<'a> NewtonSearch<'a> {
             });
             let estimate = settled.map(|shift| (self.step(), shift));
             if let Some((step, shift)) = estimate {
-                let displacement = self.system.unknowns.largest(&step);
+                let displacement = self.equations.unknowns.largest(&step);
                 let iteration = Iteration {
                     index: self.iterations,
                     residual,
@@ -314,7 +287,7 @@ impl<'a> NewtonSearch<'a> {
             factored = Some(shift);
             let step = self.step();
             let along = dot(&step, &self.along);
-            let displacement = self.system.unknowns.largest(&step);
+            let displacement = self.equations.unknowns.largest(&step);
             let iteration =
                 Iteration { index: self.iterations, residual, step: displacement, shift, fraction };
             if observer(&iteration).is_break() {
@@ -332,8 +305,8 @@ impl<'a> NewtonSearch<'a> {
             let max_step = MAX_STEP * size;
             let max_fraction = if displacement > max_step { max_step / displacement } else { 1.0 };
             fraction = self.line_search(&step, along, max_fraction);
-            self.system.unknowns.shift(&mut self.positions, &step, fraction);
-            self.loaded.model.closure_nodes.place(&mut self.positions);
+            self.equations.unknowns.shift(&mut self.positions, &step, fraction);
+            self.film.model.closure_nodes.place(&mut self.positions);
             self.iterations += 1;
             if fraction >= 0.5 {
                 shift = (shift * 0.1).max(MIN_SHIFT);
@@ -346,12 +319,9 @@ impl<'a> NewtonSearch<'a> {
     /// Factorises the stiffness at the positions, with the smallest μ from `shift` on, in powers of ten,
     /// that makes it positive definite. Returns that μ.
     fn factor(&mut self, mut shift: f64) -> Result<f64, StaticFailure> {
-        let Loaded { model, overpressure, .. } = *self.loaded;
-        let omega = model.largest_frequency();
-        self.system.assemble(model, overpressure, &self.positions);
+        self.equations.assemble(self.film, self.overpressure, &self.positions);
         loop {
-            self.factorisations += 1;
-            if self.system.factor(self.loaded.instruction_set, shift, omega) {
+            if self.equations.factor(self.film, shift) {
                 return Ok(shift);
             }
             shift *= 10.0;
@@ -376,7 +346,6 @@ impl<'a> NewtonSearch<'a> {
             positions: self.positions.clone(),
             forces: self.forces.clone(),
             iterations: self.iterations,
-            factorisations: self.factorisations,
             residual: last,
             shift,
         }
@@ -384,7 +353,7 @@ impl<'a> NewtonSearch<'a> {
 
     /// The step (m along the unknowns) by the factor in memory from the present forces.
     fn step(&mut self) -> Vec<f64> {
-        self.system.solve(self.loaded.instruction_set, &self.along)
+        self.equations.solve(self.film, &self.along)
     }
 
     /// The fraction α of a step to take: at most a few times `max_fraction`. Leaves the forces at the new
@@ -423,10 +392,6 @@ fn between(low: [f64; 2], high: [f64; 2]) -> f64 {
     // If the work at `high` is not finite, stay near `low`.
     let fraction = if fraction.is_finite() { fraction.clamp(0.1, 0.9) } else { 0.1 };
     low[0] + fraction * width
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Largest tensile stiffness E t of the film, N/m.

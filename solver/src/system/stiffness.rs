@@ -8,11 +8,10 @@
 //! The pressure on a face is given with its symmetric part; the rest cancels over a closed surface
 //! ([`crate::mechanics::forces::tangent`]). A block of a vertex without film belongs to its rim.
 
-use nalgebra::Matrix3;
-
-use super::{Evaluation, FilmState, FilmSystem, PressureLoad, Workspace};
+use super::{Evaluation, FilmSystem, PressureLoad, Workspace};
 use crate::geometry::field::Field;
 use crate::mechanics::energy_term::Blocks;
+use crate::mechanics::forces::membrane::CreepStrain;
 use crate::mechanics::forces::tangent::{self, Stiffness};
 use crate::scene::HeatTransfer;
 
@@ -27,15 +26,14 @@ pub struct GasStiffness {
 
 impl FilmSystem {
     /// Nodes and stiffness of every element with its pressure, then those of the closing faces; at these positions
-    /// (m), which `evaluation` is of.
+    /// (m), creep strains and this overpressure (Pa).
     pub fn face_stiffness<'a>(
         &'a self,
-        state: &'a FilmState,
+        creep: &'a [[CreepStrain; 2]],
         positions: &'a Field,
-        evaluation: &Evaluation,
+        overpressure: f64,
     ) -> impl Iterator<Item = ([u32; 3], Stiffness)> + 'a {
-        let overpressure = self.overpressure_at(evaluation.gas_pressure);
-        let elements = tangent::elements(&self.model, &state.creep, positions);
+        let elements = tangent::elements(&self.model, creep, positions);
         let loaded = elements.map(move |(nodes, mut stiffness)| {
             tangent::add_pressure(&mut stiffness, nodes, positions, overpressure);
             (nodes, stiffness)
@@ -46,7 +44,8 @@ impl FilmSystem {
         )
     }
 
-    /// Gives the blocks of contact, plates and further terms, as [`Self::stiffness`].
+    /// Gives the blocks of contact, plates and further terms at these positions (m) and this time (s), which the
+    /// workspace is of.
     pub fn pair_stiffness(
         &self,
         (positions, time): (&Field, f64),
@@ -75,27 +74,5 @@ impl FilmSystem {
         };
         let factor = exponent * evaluation.gas_pressure / evaluation.volume;
         Some(GasStiffness { factor, gradient: workspace.forces.areas() })
-    }
-
-    /// Gives the blocks of the stiffness at these positions (m) and this time (s), which `evaluation` and the
-    /// workspace are of; returns that of the gas, `None` under a fixed overpressure.
-    pub fn stiffness(
-        &self,
-        state: &FilmState,
-        (positions, time): (&Field, f64),
-        evaluation: &Evaluation,
-        workspace: &Workspace,
-        add: Blocks<'_>,
-    ) -> Option<GasStiffness> {
-        for (nodes, stiffness) in self.face_stiffness(state, positions, evaluation) {
-            for i in 0..3 {
-                for j in 0..3 {
-                    let block: Matrix3<f64> = stiffness.fixed_view::<3, 3>(3 * i, 3 * j).into();
-                    add([nodes[i], nodes[j]], &block);
-                }
-            }
-        }
-        self.pair_stiffness((positions, time), workspace, add);
-        self.gas_stiffness(evaluation, workspace)
     }
 }

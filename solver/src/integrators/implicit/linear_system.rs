@@ -12,7 +12,7 @@
 use nalgebra::{Matrix3, SVector};
 
 use crate::factorisation::factor::{Elimination, Factor};
-use crate::factorisation::unknowns::Unknowns;
+use crate::factorisation::unknowns::{Unknowns, dot};
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::tangent::Stiffness;
@@ -93,7 +93,8 @@ impl LinearSystem {
         weight: f64,
     ) -> bool {
         self.stiffness.fill(Stiffness::zeros());
-        let faces = system.face_stiffness(state, positions, evaluation);
+        let overpressure = system.overpressure_at(evaluation.gas_pressure);
+        let faces = system.face_stiffness(&state.creep, positions, overpressure);
         for ((_, stiffness), (face, corners)) in faces.zip(&self.places) {
             add_permuted(&mut self.stiffness[*face], &stiffness, corners);
         }
@@ -268,14 +269,9 @@ fn places(system: &FilmSystem, state: &FilmState, faces: &[[u32; 3]]) -> Vec<Pla
         let corners = nodes.each_ref().map(|node| corner(node).expect("a corner"));
         (face, corners)
     };
-    let evaluation = Evaluation { volume: 1.0, ..Evaluation::default() };
-    let all = system.face_stiffness(state, &state.positions, &evaluation);
+    let all = system.face_stiffness(&state.creep, &state.positions, 0.0);
     let nodes: Vec<[u32; 3]> = all.map(|(nodes, _)| nodes).collect();
     let elements = nodes.len() - model.closure.len();
     let kinds = (0..nodes.len()).map(|index| index >= elements);
     nodes.iter().zip(kinds).map(|(nodes, closing)| place(*nodes, closing)).collect()
-}
-
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -10,7 +10,8 @@
 //! those at the positions found so far ([`Increment::follow`]).
 
 use super::increment::Increment;
-use super::linear_system::{LinearSystem, dot};
+use super::linear_system::LinearSystem;
+use crate::factorisation::unknowns::dot;
 use crate::geometry::field::Field;
 use crate::system::{Evaluation, FilmState, FilmSystem, Workspace};
 

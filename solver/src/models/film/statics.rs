@@ -26,7 +26,8 @@ use crate::scene::{
     Contact, Film, GasSupply, HeatTransfer, IntegratorKind, Outputs, Scene, Solver, Stepping,
     Thresholds,
 };
-use crate::statics::{Loaded, StaticFailure, Tolerances, settle};
+use crate::statics::{StaticFailure, Tolerances, settle};
+use crate::system::{FilmSystem, PressureLoad};
 
 /// One static equilibrium.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,8 +42,6 @@ pub struct StaticState {
     pub strain_energy: f64,
     /// Newton steps taken.
     pub iterations: u32,
-    /// Factorisations computed.
-    pub factorisations: u32,
     /// Residual force over the load, a fraction.
     pub residual: f64,
     /// Positions of the nodes, m.
@@ -134,18 +133,17 @@ impl Erected {
         overpressure: f64,
         continues: &mut dyn FnMut() -> bool,
     ) -> Result<StaticState, StaticFailure> {
-        let loaded = Loaded {
-            model: &self.model,
-            supports: &self.supports,
-            overpressure,
-            gravity: Vector3::zeros(),
+        let load = PressureLoad::Overpressure(overpressure);
+        let film = FilmSystem {
+            supports: self.supports.clone(),
             instruction_set: self.instruction_set,
+            ..FilmSystem::free(self.model.clone(), load)
         };
         let observer = &mut |_: &_| {
             if continues() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         };
         let equilibrium =
-            settle(&loaded, &self.positions, self.equilibrium_at, &TOLERANCES, observer)?;
+            settle(&film, &self.positions, self.equilibrium_at, &TOLERANCES, observer)?;
         self.positions.clone_from(&equilibrium.positions);
         // Held nodes are at their stowed positions.
         self.supports.movers.clear();
@@ -156,7 +154,6 @@ impl Erected {
             z_rim: mean_z(&equilibrium.positions, &self.mesh.top_ring),
             strain_energy: strain_energy(&self.model, &equilibrium.positions),
             iterations: equilibrium.iterations,
-            factorisations: equilibrium.factorisations,
             residual: equilibrium.residual,
             positions: equilibrium.positions,
         })

@@ -1,8 +1,4 @@
 //! Static equilibria: the references of the paper's capsule that one job needs.
-//!
-//! ```text
-//! ms per factorisation = time of the whole search / factorisations
-//! ```
 
 use std::time::Instant;
 
@@ -43,14 +39,10 @@ pub(super) fn measure(subdivisions: u32, plan: &Plan<'_>) -> Result<Row> {
             seconds = seconds.min(search()?.1);
         }
     }
-    let work = ladder.work();
     Ok(vec![
         ("subdivisions", subdivisions.into()),
         ("elements", cost.elements.into()),
         ("states", ladder.states().len().into()),
-        ("newton_steps", work.iterations.into()),
-        ("factorisations", work.factorisations.into()),
         ("wall_seconds", seconds.into()),
-        ("ms_per_factorisation", (1e3 * seconds / f64::from(work.factorisations)).into()),
     ])
 }

@@ -16,8 +16,8 @@ use billow_solver::output::frames::Frame;
 use billow_solver::output::ledger::residuals;
 use billow_solver::output::outcome::{Deployment, Stop as End};
 use billow_solver::scene::timeline::Timeline;
-use billow_solver::statics::{Loaded, StaticFailureKind, Tolerances, settle};
-use nalgebra::Vector3;
+use billow_solver::statics::{StaticFailureKind, Tolerances, settle};
+use billow_solver::system::{FilmSystem, PressureLoad};
 use serde::{Deserialize, Serialize};
 
 use super::Method;
@@ -139,19 +139,18 @@ fn answer(
 
 /// The cell of a search for a static equilibrium.
 fn settled(rig: &Rig, vessel: &Vessel, stop: &Stop, blank: Cell) -> Option<Cell> {
-    let loaded = Loaded {
-        model: &vessel.model,
-        supports: &vessel.supports,
-        overpressure: vessel.overpressure,
-        gravity: Vector3::zeros(),
+    let load = PressureLoad::Overpressure(vessel.overpressure);
+    let film = FilmSystem {
+        supports: vessel.supports.clone(),
         instruction_set: rig.instruction_set,
+        ..FilmSystem::free(vessel.model.clone(), load)
     };
     let observer = &mut |_: &_| match stop.requested() {
         None => ControlFlow::Continue(()),
         Some(_) => ControlFlow::Break(()),
     };
     let finite = |residual: f64| Some(residual).filter(|value| value.is_finite());
-    match settle(&loaded, &vessel.positions, None, &Tolerances::default(), observer) {
+    match settle(&film, &vessel.positions, None, &Tolerances::default(), observer) {
         Ok(found) => Some(Cell {
             status: Status::Done.name().to_owned(),
             steps: found.iterations.into(),

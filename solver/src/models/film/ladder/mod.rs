@@ -59,15 +59,6 @@ pub struct LadderState {
     pub shape: StaticShape,
 }
 
-/// Work of the searches of a ladder, those without a result included.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct SearchWork {
-    /// Newton steps.
-    pub iterations: u32,
-    /// Factorisations, those of matrices that are not positive definite included.
-    pub factorisations: u32,
-}
-
 /// Static equilibria of one design, film and supports.
 #[derive(Debug, Clone)]
 pub struct Ladder {
@@ -80,7 +71,6 @@ pub struct Ladder {
     states: BTreeMap<Level, Result<StaticShape, NoReference>>,
     /// Positions of computed states, m: starts of further states. Computed again if missing.
     positions: BTreeMap<Level, Field>,
-    work: SearchWork,
 }
 
 impl Ladder {
@@ -105,7 +95,6 @@ impl Ladder {
             capsule: None,
             states: BTreeMap::new(),
             positions: BTreeMap::new(),
-            work: SearchWork::default(),
         };
         let valid = known.iter().filter(|state| {
             state.shape.overpressure.to_bits() == ladder.pressure(state.level).to_bits()
@@ -120,11 +109,6 @@ impl Ladder {
             Some(LadderState { level: *level, shape: *state.as_ref().ok()? })
         };
         self.states.iter().filter_map(found).collect()
-    }
-
-    /// Work of all searches since the ladder was made.
-    pub fn work(&self) -> SearchWork {
-        self.work
     }
 
     /// Forgets the positions of the nodes, which take most memory. Results stay the same.
@@ -273,12 +257,6 @@ impl Ladder {
         continues: Continues<'_>,
     ) -> Result<(StaticShape, Field), NoReference> {
         let found = capsule.settle_while(overpressure, continues);
-        let (iterations, factorisations) = match &found {
-            Ok(state) => (state.iterations, state.factorisations),
-            Err(failure) => (failure.iterations, failure.factorisations),
-        };
-        self.work.iterations += iterations;
-        self.work.factorisations += factorisations;
         let state = found.map_err(|failure: StaticFailure| match failure.kind {
             StaticFailureKind::Stopped => NoReference::Stopped,
             _ => NoReference::NoEquilibrium { overpressure, problem: failure.to_string() },

@@ -64,19 +64,6 @@ fn a_shape_depends_on_its_pressure_alone() {
 }
 
 #[test]
-fn the_work_of_every_search_is_counted_once() {
-    let mut first = ladder(&soft(3e8), &[]);
-    assert_eq!(first.work(), SearchWork::default());
-    first.at(200.0, &mut go_on()).unwrap();
-    let work = first.work();
-    assert!(work.iterations > 0 && work.factorisations >= work.iterations, "{work:?}");
-    first.at(200.0, &mut go_on()).unwrap();
-    assert_eq!(first.work(), work, "known states need no search");
-    first.at(15.0, &mut go_on()).unwrap();
-    assert!(first.work().factorisations > work.factorisations);
-}
-
-#[test]
 fn pressures_without_a_static_equilibrium_have_a_reason() {
     let mut ladder = ladder(&soft(3e8), &[]);
     let missing = ladder.at(1e12, &mut go_on()).unwrap_err();
