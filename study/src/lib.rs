@@ -6,7 +6,7 @@
 //!                ↑______ next_jobs(study, finished rows) ______|
 //! ```
 //!
-//! **Reading order.** [`input::study_file`] (the JSON), [`study`] (its meaning), [`study::plan`] (the
+//! **Reading order.** [`input::syntax`] (the JSON), [`study`] (its meaning), [`study::plan`] (the
 //! jobs), [`run::runner`] (running them), [`store::history_file`] and [`store::table`] (what is stored).
 //!
 //! **Folders.** Each uses only those below it:

@@ -4,7 +4,7 @@
 //! 0.02 = "2 %"
 //! ```
 
-use super::study_file::Json;
+use super::json::Json;
 use super::units::{self, Dimension};
 
 /// What a relative error may be, for messages.

@@ -3,9 +3,11 @@
 
 pub mod expression;
 pub mod fraction;
+pub mod json;
 pub mod keys;
 pub(crate) mod overrides;
 mod parts;
+pub(crate) mod place;
 pub(crate) mod plausible;
 pub mod schema;
 pub(crate) mod settings;

@@ -7,9 +7,10 @@
 //! - `replicates.seed=3` sets the replicates of a key.
 //! - A list for a key that takes one value is an axis in a study: `N=[5, 6]` is `grid.N=[5, 6]`.
 
+use crate::input::json::Json;
 use crate::input::keys::{self, KeyKind, Table};
 use crate::input::source::Source;
-use crate::input::study_file::{self, Json};
+use crate::input::syntax;
 use crate::platform::error::InputError;
 use crate::platform::nearest::did_you_mean;
 use crate::platform::quote;
@@ -87,7 +88,7 @@ fn refused(set: &str, problem: &str) -> InputError {
 /// object or a text in quotes does.
 fn value_of(set: &str, value: &str) -> Result<Json, InputError> {
     let value = value.trim();
-    match study_file::parse(value, "") {
+    match syntax::parse(value, "") {
         Ok(json) => Ok(json),
         Err(mut error) if value.starts_with(['[', '{', '"']) => {
             error.file = flag(set);

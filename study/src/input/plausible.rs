@@ -1,8 +1,9 @@
 //! Values outside the plausible range of their key: probably a forgotten or mistaken unit. Such a value is
 //! used; a warning says what it means in SI and what to write.
 
+use crate::input::json::Json;
 use crate::input::keys::{Key, KeyKind, Quantity};
-use crate::input::study_file::{Json, parse};
+use crate::input::syntax::parse;
 use crate::input::units::{self, Dimension, DisplayUnit, written_unit};
 use crate::input::value::{Value, short_number};
 

@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
+use crate::input::json::Json;
 use crate::input::keys::{self, Key, Named, Table, pick};
 use crate::input::plausible;
 use crate::input::source::{Source, shown};
-use crate::input::study_file::Json;
 use crate::input::value::Value;
 use crate::platform::error::InputError;
 

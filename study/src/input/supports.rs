@@ -2,10 +2,10 @@
 
 use billow_solver::scene::{Support, SupportLocation};
 
+use crate::input::json::Json;
 use crate::input::keys::{CAPSULE_SUPPORT_KEYS, SUPPORT_PLACES, named};
 use crate::input::settings::{list, read as read_key};
 use crate::input::source::Source;
-use crate::input::study_file::Json;
 use crate::input::value::Value;
 use crate::platform::error::InputError;
 

@@ -1,6 +1,6 @@
 //! A results folder that this process has for itself: what dead processes left is cleared before anything is written.
 
-use crate::input::study_file::Json;
+use crate::input::json::Json;
 use crate::platform::error::Result;
 use crate::store::attempts;
 use crate::store::journal::{Fault, Journal, Writer};

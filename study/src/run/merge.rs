@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::input::study_file::Json;
+use crate::input::json::Json;
 use crate::job::JobId;
 use crate::job::row::ColumnId;
 use crate::platform::error::{Error, Result};

@@ -12,10 +12,10 @@ use billow_solver::scene::ModelKind;
 use super::StudyPoint;
 use crate::accuracy::{Choice, MeshErrors, PROMISED, Tolerances, all_but_peak_vz, choices};
 use crate::input::fraction::{RELATIVE_ERROR, relative_error_in};
+use crate::input::json::Json;
 use crate::input::keys::STUDY;
 use crate::input::settings::object;
 use crate::input::source::Source;
-use crate::input::study_file::Json;
 use crate::platform::error::InputError;
 use crate::platform::nearest::nearest;
 

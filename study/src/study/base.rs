@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use serde_json::{Map, json};
 
 use super::strategy::{Strategy, read_strategy};
+use crate::input::json::Json;
 use crate::input::keys::{self, KEYS, STUDY, position};
 use crate::input::settings::{Settings, check_version, object};
 use crate::input::source::Source;
-use crate::input::study_file::Json;
 use crate::input::supports;
 use crate::input::value::{Value, json_value};
 use crate::platform::error::InputError;

@@ -1,7 +1,7 @@
 //! The limits of jobs: from the study file, and from the command line.
 
+use crate::input::json::Json;
 use crate::input::keys::{KEYS, position};
-use crate::input::study_file::Json;
 use crate::input::value::Value;
 use crate::job::limits::JobLimits;
 use crate::platform::error::{Error, Result};

@@ -9,9 +9,9 @@ use super::StudyPoint;
 use super::grid::{Axis, AxisKind, Context, Grid};
 use super::target::{Column, Target};
 use crate::accuracy::MeshErrors;
+use crate::input::json::Json;
 use crate::input::keys::{self, KEYS, position, short_name};
 use crate::input::source::Source;
-use crate::input::study_file::Json;
 use crate::input::value::Value;
 use crate::platform::error::InputError;
 

@@ -35,12 +35,13 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::accuracy::Tolerances;
+use crate::input::json::Json;
 use crate::input::keys::STUDY;
 use crate::input::overrides;
 use crate::input::source::Source;
-use crate::input::study_file::{self, Json};
 use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
+use crate::input::{study_file, syntax};
 use crate::job::limits::JobLimits;
 use crate::job::result_limit::ResultLimit;
 use crate::platform::error::{InputError, Result as BillowResult};
@@ -117,9 +118,9 @@ impl Study {
         sets: &[String],
         size: PlanSize,
     ) -> Result<Self, InputError> {
-        let tree = study_file::parse(text, file)?;
+        let tree = syntax::parse(text, file)?;
         Self::from_tree(tree, file, stem, sets, size)
-            .map_err(|error| study_file::with_place(error, text, file))
+            .map_err(|error| syntax::with_place(error, text, file))
     }
 
     /// Reads a study from the tree of its text.

@@ -2,9 +2,9 @@
 
 use super::Study;
 use super::target::{self, Section};
+use crate::input::json::Json;
 use crate::input::keys::{self, KEYS, Key};
 use crate::input::source::Source;
-use crate::input::study_file::Json;
 use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
 use crate::job::Parameters;

@@ -7,10 +7,10 @@
 //! ```
 
 use super::plan_size::PlanSize;
+use crate::input::json::Json;
 use crate::input::keys::{Key, KeyKind};
 use crate::input::settings::{read, read_silently};
 use crate::input::source::Source;
-use crate::input::study_file::Json;
 use crate::input::units;
 use crate::input::value::Value;
 use crate::platform::error::InputError;

@@ -6,8 +6,8 @@
 use super::REPLICATES;
 use super::grid::{Axis, AxisKind, Context, Grid};
 use super::target::{Section, Target};
+use crate::input::json::Json;
 use crate::input::keys::{KEYS, position};
-use crate::input::study_file::Json;
 use crate::platform::error::InputError;
 
 /// The key of which a number of values is enough.

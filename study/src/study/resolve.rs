@@ -246,7 +246,7 @@ impl Windows<'_> {
 mod tests {
     use super::*;
     use crate::input::keys::{KEYS, KeyKind};
-    use crate::input::study_file::parse;
+    use crate::input::syntax::parse;
     use crate::input::value::Value;
 
     const TEXT: &str = r#"{

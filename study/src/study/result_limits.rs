@@ -1,9 +1,9 @@
 //! The section `limits` of a study: what its results must meet to be safe.
 
+use crate::input::json::Json;
 use crate::input::keys::STUDY;
 use crate::input::settings::object;
 use crate::input::source::Source;
-use crate::input::study_file::Json;
 use crate::input::units::{self, Dimension};
 use crate::input::value::Value;
 use crate::job::result_limit::{Condition, ResultLimit};
@@ -154,11 +154,11 @@ fn unknown(name: &str, path: &str, value: &Json, source: &Source) -> InputError 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::study_file;
+    use crate::input::syntax;
     use crate::job::row::ColumnId;
 
     fn limits(text: &str) -> Result<Vec<ResultLimit>, InputError> {
-        read(Some(&study_file::parse(text, "s.json").unwrap()), &Source::new("s.json"))
+        read(Some(&syntax::parse(text, "s.json").unwrap()), &Source::new("s.json"))
     }
 
     #[test]

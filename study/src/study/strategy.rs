@@ -2,10 +2,10 @@
 
 use serde_json::{Map, json};
 
+use crate::input::json::Json;
 use crate::input::keys::{self, Key, STRATEGY_KEYS, WINDOW_KEYS, position};
 use crate::input::settings::{list, read};
 use crate::input::source::Source;
-use crate::input::study_file::Json;
 use crate::input::value::{Value, json_value};
 use crate::platform::error::InputError;
 

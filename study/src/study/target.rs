@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 
 use super::base::Base;
+use crate::input::json::Json;
 use crate::input::keys::{self, KEYS, Key, STRATEGY_KEYS, WINDOW_KEYS};
 use crate::input::source::Source;
-use crate::input::study_file::Json;
 use crate::input::value::Value;
 use crate::platform::error::InputError;
 

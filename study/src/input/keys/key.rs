@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::quantity::{Quantity, integer};
 use super::words::Word;
-use crate::input::study_file::Json;
+use crate::input::json::Json;
 use crate::input::units::Dimension;
 use crate::input::value::Value;
 use crate::platform::nearest::nearest;

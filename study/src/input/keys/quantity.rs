@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::input::study_file::Json;
+use crate::input::json::Json;
 use crate::input::units::{self, Dimension};
 use crate::input::value::{Value, short_number};
 

@@ -1,6 +1,7 @@
 use super::listing::{FileKind, entries};
 use super::*;
-use crate::input::study_file::{Json, parse};
+use crate::input::json::Json;
+use crate::input::syntax::parse;
 use crate::input::value::Value;
 
 /// Every key of both kinds of file, those of objects included.

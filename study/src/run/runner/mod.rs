@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZero;
 use std::time::Duration;
 
-use crate::input::study_file::Json;
+use crate::input::json::Json;
 use crate::job::executor::Executor;
 use crate::job::limits::JobLimits;
 use crate::job::point::Point;

@@ -8,10 +8,10 @@ use billow_solver::scene::plate::Plate;
 
 use super::object::Object;
 use super::{is_static, motion};
+use crate::input::json::Json;
 use crate::input::keys::{PLATE_KEYS, named};
 use crate::input::settings::{Settings, list};
 use crate::input::source::Source;
-use crate::input::study_file::Json;
 use crate::platform::error::InputError;
 
 /// Reads `contact`; `None` where contact is off.

@@ -12,11 +12,11 @@ use nalgebra::Vector3;
 use super::is_static;
 use super::object::Object;
 use super::shape::Shape;
+use crate::input::json::Json;
 use crate::input::keys::{SCENE_WINDOW_KEYS, named};
 use crate::input::plausible::Implausible;
 use crate::input::settings::{Settings, list};
 use crate::input::source::{Source, shown};
-use crate::input::study_file::Json;
 use crate::platform::error::InputError;
 
 /// Reads `gas`. With gas, fans close an open film.

@@ -14,9 +14,9 @@ use super::reader::Reader;
 use super::reference::{flattened, reference};
 use super::shape::{Numbering, Shape};
 use super::weld;
+use crate::input::json::Json;
 use crate::input::keys::{MESH_KEYS, named};
 use crate::input::source::Source;
-use crate::input::study_file::Json;
 use crate::platform::error::{Error, InputError, Result};
 
 /// Reads `mesh`.

@@ -33,12 +33,13 @@ use billow_solver::scene::film_scene::{FilmScene, FilmSolver};
 use nalgebra::Vector3;
 use serde_json::json;
 
+use crate::input::json::Json;
 use crate::input::keys::{GRAVITY, Refusal, SCENE};
 use crate::input::overrides;
 use crate::input::settings::{Settings, check_sample_interval, check_version};
 use crate::input::source::Source;
-use crate::input::study_file::{self, Json};
 use crate::input::value::Value;
+use crate::input::{study_file, syntax};
 use crate::job::canonical_json;
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::provenance::PHYSICS_VERSION;
@@ -97,9 +98,9 @@ impl SceneFile {
         instruction_set: InstructionSet,
     ) -> Result<Self> {
         let file = path.display().to_string();
-        let tree = study_file::parse(text, &file)?;
+        let tree = syntax::parse(text, &file)?;
         Self::from_tree(tree, path, sets, instruction_set).map_err(|error| match error {
-            Error::Input(error) => Error::Input(study_file::with_place(error, text, &file)),
+            Error::Input(error) => Error::Input(syntax::with_place(error, text, &file)),
             other => other,
         })
     }

@@ -3,10 +3,10 @@
 use billow_solver::scene::motion::{Motion, Profile, Rotation};
 
 use super::object::Object;
+use crate::input::json::Json;
 use crate::input::keys::{MOVE_KEYS, PROFILES, ROTATION_KEYS, named};
 use crate::input::settings::Settings;
 use crate::input::source::{Source, shown};
-use crate::input::study_file::Json;
 use crate::platform::error::InputError;
 
 /// Reads a prescribed motion; it ends with the run where it gives no end.

@@ -2,10 +2,10 @@
 
 use nalgebra::Vector3;
 
+use crate::input::json::Json;
 use crate::input::keys::{self, Key, Refusal};
 use crate::input::settings::read;
 use crate::input::source::Source;
-use crate::input::study_file::Json;
 use crate::input::value::Value;
 use crate::platform::error::InputError;
 

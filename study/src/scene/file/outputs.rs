@@ -9,10 +9,10 @@ use nalgebra::Vector3;
 use super::object::Object;
 use super::selection::{triangle, vertex};
 use super::shape::Shape;
+use crate::input::json::Json;
 use crate::input::keys::{NEAR, OUTPUT_KEYS, named};
 use crate::input::plausible::{Implausible, MIN_SAMPLES};
 use crate::input::source::{Source, shown};
-use crate::input::study_file::Json;
 use crate::platform::error::InputError;
 
 /// Names of what is recorded, in the order of [`FilmOutputs`].

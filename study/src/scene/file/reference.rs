@@ -6,8 +6,8 @@ use nalgebra::{Vector2, Vector3};
 
 use super::object::Object;
 use super::reader::Reader;
+use crate::input::json::Json;
 use crate::input::keys::{FLAT, KeyKind};
-use crate::input::study_file::Json;
 use crate::platform::error::{Error, Result};
 
 /// Stress-free corners of each triangle of each face, m.

@@ -6,9 +6,9 @@ use nalgebra::Vector3;
 use super::object::Object;
 use super::reader::Reader;
 use super::shape::Shape;
+use crate::input::json::Json;
 use crate::input::keys::{SPIN_KEYS, START_KEYS, named};
 use crate::input::source::Source;
-use crate::input::study_file::Json;
 use crate::platform::error::Result;
 
 /// Reads `start`: the velocity of each node, m/s; empty for a start at rest.

@@ -9,10 +9,10 @@ use super::motion;
 use super::object::Object;
 use super::selection::{self, Plane};
 use super::shape::Shape;
+use crate::input::json::Json;
 use crate::input::keys::{BODY_KEYS, SUPPORT_KEYS, named};
 use crate::input::settings::{Settings, list};
 use crate::input::source::Source;
-use crate::input::study_file::Json;
 use crate::input::supports::are_components;
 use crate::platform::error::InputError;
 

@@ -10,7 +10,7 @@ use billow_solver::platform::seal;
 use serde::Deserialize;
 
 use super::Results;
-use crate::input::study_file::Json;
+use crate::input::json::Json;
 use crate::input::units::DisplayUnits;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{self, disk_error};

@@ -1,13 +1,15 @@
 //! One axis of a grid: a list of values, a range, or a group of keys that vary together.
 
 use super::{Axis, AxisKind, Context, Grid};
+use crate::input::json::Json;
 use crate::input::keys::{KEYS, position};
 use crate::input::settings::read;
-use crate::input::study_file::Json;
+use crate::input::source::Source;
 use crate::input::value::Value;
+use crate::job::proportion::Proportion;
 use crate::platform::error::InputError;
 use crate::study::range::RangeInput;
-use crate::study::search::is_search;
+use crate::study::search::{SearchFile, is_search};
 use crate::study::target::{self, Section, Target};
 
 /// What an axis must look like, for errors.
@@ -71,6 +73,43 @@ impl Grid {
             .collect();
         self.axes.push(Axis { columns, rows, kind: AxisKind::Values });
         Ok(())
+    }
+
+    /// Reads a search as an axis of this column.
+    pub(super) fn read_search(
+        &mut self,
+        column: usize,
+        json: &Json,
+        path: &str,
+        context: Context<'_>,
+    ) -> Result<(), InputError> {
+        let key = self.columns[column].target.key();
+        let file = SearchFile { key, json, path, source: context.source };
+        if self.search.is_some() {
+            return file
+                .refuse("is a second search", "one search in a study; the other axes as lists");
+        }
+        let search = file.read(column, context.limits)?;
+        let rows = search.scan().into_iter().map(|number| vec![search.value(number)]).collect();
+        self.axes.push(Axis { columns: vec![column], rows, kind: AxisKind::Search });
+        self.search = Some(search);
+        Ok(())
+    }
+
+    /// Refuses a search whose replicates can never decide.
+    pub(super) fn check_search(&self, source: &Source) -> Result<(), InputError> {
+        let count = self.replicate_count();
+        let decides = Proportion { met: count, of: count }.majority().is_some();
+        let Some(search) = self.search.as_ref().filter(|_| count > 1 && !decides) else {
+            return Ok(());
+        };
+        let path = format!("grid.{}.bisect", self.columns[search.column].name);
+        let problem = format!(
+            "{count} replicates can never exclude one half: their Wilson interval is too wide"
+        );
+        let mut error = source.error(&path, "", problem, "no replicates, or 4 and more");
+        "give \"replicates\": {\"seed\": 5}".clone_into(&mut error.hint);
+        Err(error)
     }
 
     /// Adds the column of a key; refuses a key that another axis varies.

@@ -3,8 +3,8 @@
 use super::axis::value;
 use super::{Context, Grid};
 use crate::input::expression::{self, Expression};
+use crate::input::json::Json;
 use crate::input::settings::list;
-use crate::input::study_file::Json;
 use crate::input::value::Value;
 use crate::platform::error::InputError;
 use crate::study::target::{self, Section};

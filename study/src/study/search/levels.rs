@@ -110,7 +110,7 @@ mod tests {
 
     fn search(tolerance: Tolerance, spacing: Spacing) -> Search {
         let criterion = Criterion::Deployed;
-        let written_tolerance = crate::input::study_file::Json::Null;
+        let written_tolerance = crate::input::json::Json::Null;
         let ends = [1.0, 9.0];
         Search { column: 0, ends, spacing, criterion, tolerance, written_tolerance, integer: false }
     }

@@ -13,9 +13,9 @@ mod read;
 pub(crate) mod replay;
 
 pub use levels::{Border, Level, Outcome};
-pub(super) use read::is_search;
+pub(super) use read::{SearchFile, is_search};
 
-use crate::input::study_file::Json;
+use crate::input::json::Json;
 use crate::input::value::json_value;
 use crate::job::result_limit::ResultLimit;
 

@@ -1,18 +1,16 @@
 //! Reads `{"bisect": [low, high], "on": …, "tolerance": …, "spacing": …}`, an axis of the grid.
 
 use super::{Criterion, Search, Spacing, Tolerance};
+use crate::input::json::Json;
 use crate::input::keys::{Key, KeyKind};
 use crate::input::settings::{list, read};
 use crate::input::source::Source;
-use crate::input::study_file::Json;
 use crate::input::units::{self, Dimension};
 use crate::input::value::Value;
-use crate::job::proportion::Proportion;
 use crate::job::result_limit::ResultLimit;
 use crate::job::row::ColumnId;
 use crate::platform::error::InputError;
 use crate::platform::nearest::nearest;
-use crate::study::grid::{Axis, AxisKind, Context, Grid};
 use billow_solver::output::measures::Verdict;
 
 /// The member that makes an axis a search.
@@ -34,55 +32,6 @@ pub(in crate::study) fn is_search(json: &Json) -> bool {
     json.get(BISECT).is_some()
 }
 
-impl Grid {
-    /// Reads a search as an axis of this column.
-    ///
-    /// # Errors
-    /// A second search, a key without numbers, ends or a tolerance that are not allowed, an unknown
-    /// criterion.
-    pub(in crate::study) fn read_search(
-        &mut self,
-        column: usize,
-        json: &Json,
-        path: &str,
-        context: Context<'_>,
-    ) -> Result<(), InputError> {
-        let Context { limits, source, .. } = context;
-        let key = self.columns[column].target.key();
-        let file = SearchFile { key, json, path, source };
-        if self.search.is_some() {
-            return file
-                .refuse("is a second search", "one search in a study; the other axes as lists");
-        }
-        let search = file.read(column, limits)?;
-        let values = search.scan().into_iter().map(|number| vec![search.value(number)]);
-        let rows = values.collect();
-        self.axes.push(Axis { columns: vec![column], rows, kind: AxisKind::Search });
-        self.search = Some(search);
-        Ok(())
-    }
-
-    /// Refuses a search whose replicates can never decide.
-    pub(in crate::study) fn check_search(&self, source: &Source) -> Result<(), InputError> {
-        let count = self.replicate_count();
-        let decides = Proportion { met: count, of: count }.majority().is_some();
-        let Some(search) = self.search.as_ref().filter(|_| count > 1 && !decides) else {
-            return Ok(());
-        };
-        let path = format!("grid.{}.bisect", self.columns[search.column].name);
-        let mut error = source.error(
-            &path,
-            "",
-            format!(
-                "{count} replicates can never exclude one half: their Wilson interval is too wide"
-            ),
-            "no replicates, or 4 and more",
-        );
-        "give \"replicates\": {\"seed\": 5}".clone_into(&mut error.hint);
-        Err(error)
-    }
-}
-
 impl Search {
     /// A value of the key.
     pub fn value(&self, number: f64) -> Value {
@@ -92,19 +41,25 @@ impl Search {
 }
 
 /// A search in the file.
-struct SearchFile<'a> {
-    key: &'static Key,
-    json: &'a Json,
-    path: &'a str,
-    source: &'a Source,
+pub(in crate::study) struct SearchFile<'a> {
+    /// The key along which it runs.
+    pub key: &'static Key,
+    pub json: &'a Json,
+    /// Its place in the file, as in `grid.N`.
+    pub path: &'a str,
+    pub source: &'a Source,
 }
 
 impl SearchFile<'_> {
-    fn refuse<T>(&self, problem: &str, allowed: &str) -> Result<T, InputError> {
+    pub fn refuse<T>(&self, problem: &str, allowed: &str) -> Result<T, InputError> {
         Err(self.source.error(self.path, &self.json.brief(), problem, allowed))
     }
 
-    fn read(&self, column: usize, limits: &[ResultLimit]) -> Result<Search, InputError> {
+    /// Reads it as the search along a column of the grid; `limits` are those of the study.
+    ///
+    /// # Errors
+    /// A key without numbers, ends or a tolerance that are not allowed, an unknown criterion.
+    pub fn read(&self, column: usize, limits: &[ResultLimit]) -> Result<Search, InputError> {
         let Json::Object(members) = self.json else {
             return self.refuse("is not an object", ALLOWED);
         };

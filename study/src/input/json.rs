@@ -1,0 +1,164 @@
+//! A JSON tree in file order, before its keys get a meaning.
+
+use serde::ser::{Serialize, Serializer};
+
+/// A JSON value: objects in file order, no key twice, whole numbers distinct from others.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Json {
+    /// `null`.
+    Null,
+    /// `true`, `false`.
+    Bool(bool),
+    /// A number written without fraction and exponent.
+    Integer(i64),
+    /// Any other number; finite.
+    Number(f64),
+    /// A string.
+    Text(String),
+    /// An array.
+    List(Vec<Json>),
+    /// An object.
+    Object(Vec<(String, Json)>),
+}
+
+impl Json {
+    /// The value of a key of an object.
+    pub fn get(&self, key: &str) -> Option<&Self> {
+        let Self::Object(members) = self else { return None };
+        members.iter().find(|(name, _)| name == key).map(|(_, value)| value)
+    }
+
+    /// The value of a key of an object, to change it.
+    pub fn get_mut(&mut self, key: &str) -> Option<&mut Self> {
+        let Self::Object(members) = self else { return None };
+        members.iter_mut().find(|(name, _)| name == key).map(|(_, value)| value)
+    }
+
+    /// Sets a key of an object: replaces its value, or adds it as the last one.
+    pub fn set(&mut self, key: &str, value: Self) {
+        match self.get_mut(key) {
+            Some(member) => *member = value,
+            None => {
+                if let Self::Object(members) = self {
+                    members.push((key.to_owned(), value));
+                }
+            }
+        }
+    }
+
+    /// Name of its type, with its article, for errors.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Null => "null",
+            Self::Bool(_) => "true or false",
+            Self::Integer(_) => "a whole number",
+            Self::Number(_) => "a number",
+            Self::Text(_) => "a text",
+            Self::List(_) => "a list",
+            Self::Object(_) => "an object",
+        }
+    }
+
+    /// The value as written, on one line, cut to the length of an error's line.
+    pub fn brief(&self) -> String {
+        /// Characters of a value in an error (chosen: key and value fit on one line).
+        const MAX_LENGTH: usize = 60;
+        let mut text = String::new();
+        write_json(self, &mut text, MAX_LENGTH);
+        if text.chars().count() > MAX_LENGTH {
+            text = text.chars().take(MAX_LENGTH - 1).collect();
+            text.push('…');
+        }
+        text
+    }
+}
+
+/// Writes compact JSON; stops soon after `max_length` bytes.
+fn write_json(value: &Json, text: &mut String, max_length: usize) {
+    if text.len() > max_length {
+        return;
+    }
+    match value {
+        Json::Null => text.push_str("null"),
+        Json::Bool(value) => text.push_str(if *value { "true" } else { "false" }),
+        Json::Integer(value) => text.push_str(&value.to_string()),
+        Json::Number(value) => text.push_str(&serde_json::Value::from(*value).to_string()),
+        Json::Text(value) => text.push_str(&serde_json::Value::from(value.as_str()).to_string()),
+        Json::List(items) => {
+            text.push('[');
+            for (index, item) in items.iter().enumerate() {
+                text.push_str(if index > 0 { ", " } else { "" });
+                write_json(item, text, max_length);
+                if text.len() > max_length {
+                    return;
+                }
+            }
+            text.push(']');
+        }
+        Json::Object(members) => {
+            text.push('{');
+            for (index, (key, item)) in members.iter().enumerate() {
+                text.push_str(if index > 0 { ", " } else { "" });
+                text.push_str(&serde_json::Value::from(key.as_str()).to_string());
+                text.push_str(": ");
+                write_json(item, text, max_length);
+                if text.len() > max_length {
+                    return;
+                }
+            }
+            text.push('}');
+        }
+    }
+}
+
+/// In file order.
+impl Serialize for Json {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        match self {
+            Self::Null => serializer.serialize_unit(),
+            Self::Bool(value) => serializer.serialize_bool(*value),
+            Self::Integer(value) => serializer.serialize_i64(*value),
+            Self::Number(value) => serializer.serialize_f64(*value),
+            Self::Text(value) => serializer.serialize_str(value),
+            Self::List(items) => serializer.collect_seq(items),
+            Self::Object(members) => {
+                serializer.collect_map(members.iter().map(|(key, value)| (key, value)))
+            }
+        }
+    }
+}
+
+impl From<serde_json::Value> for Json {
+    fn from(value: serde_json::Value) -> Self {
+        match value {
+            serde_json::Value::Null => Self::Null,
+            serde_json::Value::Bool(value) => Self::Bool(value),
+            serde_json::Value::Number(number) => number
+                .as_i64()
+                .map_or_else(|| Self::Number(number.as_f64().unwrap_or(f64::NAN)), Self::Integer),
+            serde_json::Value::String(text) => Self::Text(text),
+            serde_json::Value::Array(items) => {
+                Self::List(items.into_iter().map(Self::from).collect())
+            }
+            serde_json::Value::Object(members) => Self::Object(
+                members.into_iter().map(|(key, value)| (key, Self::from(value))).collect(),
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::syntax::parse;
+
+    #[test]
+    fn objects_keep_their_order_and_numbers_their_type() {
+        let json = parse(r#"{"b": 8, "a": [8.0, "x", null, true]}"#, "f").unwrap();
+        let Json::Object(members) = &json else { panic!("{json:?}") };
+        assert_eq!(members[0], ("b".to_owned(), Json::Integer(8)));
+        assert_eq!(json.brief(), r#"{"b": 8, "a": [8.0, "x", null, true]}"#);
+        let written = serde_json::to_string(&json).unwrap();
+        assert_eq!(written, r#"{"b":8,"a":[8.0,"x",null,true]}"#);
+    }
+}
