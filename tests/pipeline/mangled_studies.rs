@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::fs;
 
 use billow_study::input::study_file;
+use billow_study::study::Study;
 use billow_study::study::plan::next_jobs;
-use billow_study::study::{PlanSize, Study};
 use serde_json::{Value as Json, json};
 
 /// `SplitMix64` (Steele, Lea, Flood 2014): small, seeded, the same everywhere.
@@ -130,9 +130,8 @@ fn a_hundred_thousand_mangled_studies_plan_or_name_their_error() {
             }
             study.to_string().into_bytes()
         };
-        let study = study_file::text_of(&bytes, "fuzz.json").and_then(|text| {
-            Study::from_text(text, "fuzz.json", "fuzz", &[], PlanSize { points: 24 })
-        });
+        let study = study_file::text_of(&bytes, "fuzz.json")
+            .and_then(|text| Study::from_text(text, "fuzz.json", "fuzz", &[], 24));
         match study {
             Ok(study) => {
                 // At most the allowed number of points, and no job twice.

@@ -17,7 +17,7 @@ use billow_solver::scene::timeline::Timeline;
 use billow_solver::scene::{ModelKind, Scene};
 use billow_study::scene::file::SceneFile;
 use billow_study::study::plan::next_jobs;
-use billow_study::study::{PlanSize, Study};
+use billow_study::study::{MAX_POINTS, Study};
 
 /// Length of each run, s: until the first storeys have risen.
 const END_TIME: f64 = 0.03;
@@ -161,8 +161,7 @@ fn check_scene(file: &str) {
 /// The first film capsule of a study that has gas at the start, on a mesh of two subdivisions.
 fn capsule_of(study: &str) -> Option<Scene> {
     let text = shipped(&format!("studies/{study}.json"));
-    let study =
-        Study::from_text(&text, "study.json", study, &[], PlanSize::default()).expect("valid");
+    let study = Study::from_text(&text, "study.json", study, &[], MAX_POINTS).expect("valid");
     let mut points = next_jobs(&study, &[])?.points.into_iter();
     let has_gas = |scene: &Scene| {
         let early = scene.gas.windows.iter().any(|window| window.from < 0.1 * END_TIME);

@@ -8,13 +8,13 @@ use billow_study::job::{JobId, Status};
 use billow_study::platform::error::InputError;
 use billow_study::study::finished::FinishedRow;
 use billow_study::study::plan::{Generation, PlanCounts, next_jobs};
-use billow_study::study::{PlanSize, Study};
+use billow_study::study::{MAX_POINTS, Study};
 use proptest::prelude::*;
 use serde_json::{Value as Json, json};
 
 fn try_study(json: &Json, sets: &[&str]) -> Result<Study, InputError> {
     let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
-    Study::from_text(&json.to_string(), "test.json", "test", &sets, PlanSize::default())
+    Study::from_text(&json.to_string(), "test.json", "test", &sets, MAX_POINTS)
 }
 
 fn plan(json: &Json, sets: &[&str]) -> Generation {
@@ -156,7 +156,7 @@ proptest! {
         prop_assert_eq!(&id(&rewritten), &expected);
 
         let text = reversed(&rewritten);
-        let other = Study::from_text(&text, "f", "x", &[], PlanSize::default()).unwrap();
+        let other = Study::from_text(&text, "f", "x", &[], MAX_POINTS).unwrap();
         prop_assert_eq!(&next_jobs(&other, &[]).unwrap().points[0].job.id, &expected);
 
         // With every default written out.
@@ -170,7 +170,7 @@ fn a_grid_is_the_product_in_the_order_of_the_file() {
     let text = r#"{"design": {"bottom_radius": 0.5, "top_radius": 0.365, "height": 1},
         "gas": {"mass_flow_rate": 0.005}, "solver": {"model": "piston", "end_time": 0.5},
         "grid": {"N": [5, 6], "M": [4, 3], "film.thickness": ["25.4 um", "12.7 um"]}}"#;
-    let study = Study::from_text(text, "f", "x", &[], PlanSize::default()).unwrap();
+    let study = Study::from_text(text, "f", "x", &[], MAX_POINTS).unwrap();
     assert_eq!(study.parameter_names(), ["N", "M", "thickness"]);
     let generation = next_jobs(&study, &[]).unwrap();
     assert_eq!(generation.number, 0);

@@ -5,7 +5,7 @@ use billow_study::job::JobId;
 use billow_study::platform::files::Disk;
 use billow_study::store::results::Results;
 use billow_study::store::stored::Stored;
-use billow_study::study::{Border, Outcome, PlanSize, Study};
+use billow_study::study::{Border, MAX_POINTS, Outcome, Study};
 use serde_json::{Value as Json, json};
 
 use crate::support::{TestFolder, grid, stderr};
@@ -82,7 +82,7 @@ fn an_interrupted_search_plans_the_same_jobs() {
     let whole = TestFolder::finished(&searching());
     let parts = TestFolder::new(&searching());
     // First the scan alone, as the jobs of a plain grid.
-    let scan = Study::from_text(&searching().to_string(), "s.json", "s", &[], PlanSize::default());
+    let scan = Study::from_text(&searching().to_string(), "s.json", "s", &[], MAX_POINTS);
     let rates: Vec<Json> = scan
         .unwrap()
         .resolved()
@@ -123,8 +123,7 @@ fn single_points_have_all_replicates() {
     study["design"]["alpha1_over_phi"] = json!(1);
     study["replicates"] =
         json!({"seed": 3, "film.thickness": {"from": "20 um", "to": "30 um", "steps": 2}});
-    let study =
-        Study::from_text(&study.to_string(), "s.json", "s", &[], PlanSize::default()).unwrap();
+    let study = Study::from_text(&study.to_string(), "s.json", "s", &[], MAX_POINTS).unwrap();
     assert_eq!(study.replicates(), ["thickness", "seed"], "keys in order");
     assert_eq!(study.replicate_count(), 6);
     let plan = billow_study::study::plan::next_jobs(&study, &[]).unwrap();
@@ -132,7 +131,7 @@ fn single_points_have_all_replicates() {
     assert_eq!((points, plan.points.len()), (6, 6));
     // The resolved study is the same study.
     let text = serde_json::to_string(&study.resolved()).unwrap();
-    let again = Study::from_text(&text, "s.json", "s", &[], PlanSize::default()).unwrap();
+    let again = Study::from_text(&text, "s.json", "s", &[], MAX_POINTS).unwrap();
     assert_eq!(billow_study::study::plan::next_jobs(&again, &[]), Some(plan));
     assert_eq!(again.replicates(), study.replicates());
 }

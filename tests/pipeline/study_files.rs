@@ -7,7 +7,7 @@ use std::process::Command;
 use billow_study::input::schema::study_schema;
 use billow_study::job::JobId;
 use billow_study::study::plan::next_jobs;
-use billow_study::study::{PlanSize, Study};
+use billow_study::study::{MAX_POINTS, Study};
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../studies")
@@ -63,7 +63,7 @@ fn a_resolved_study_has_the_same_jobs() {
         let text = serde_json::to_string(&resolved).unwrap();
         let value = serde_json::from_str(&text).unwrap();
         assert!(validator.is_valid(&value), "{}", path.display());
-        let again = Study::from_text(&text, "study.json", "x", &[], PlanSize::default());
+        let again = Study::from_text(&text, "study.json", "x", &[], MAX_POINTS);
         let again = again.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         assert_eq!(ids(&again), ids(&study), "{}", path.display());
         assert_eq!(again.resolved(), resolved);
@@ -108,8 +108,7 @@ fn the_schema_refuses_what_the_program_refuses() {
             None => broken[&pointer[1..]] = value.clone(),
         }
         assert!(!validator.is_valid(&broken), "the schema takes {pointer} = {value}");
-        let read =
-            Study::from_text(&broken.to_string(), "broken.json", "x", &[], PlanSize::default());
+        let read = Study::from_text(&broken.to_string(), "broken.json", "x", &[], MAX_POINTS);
         assert!(read.is_err(), "the program takes {pointer} = {value}");
     }
 }

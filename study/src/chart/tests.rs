@@ -6,7 +6,7 @@ use billow_solver::output::outcome::FailureKind;
 
 use super::kinds::ChartKind;
 use super::*;
-use crate::job::point::{Infeasible, Point};
+use crate::job::point::{Infeasible, Point, Searched};
 use crate::job::row::{Cells, ColumnId};
 use crate::job::{Job, JobId, Status};
 use crate::render::figure::check;
@@ -22,7 +22,7 @@ fn point(number: u32, parameters: &[(&str, Value)]) -> Point {
     let mut job: Job = fixture::job(number);
     job.parameters =
         parameters.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect();
-    Point { job, infeasible: None, solved: None, merged: Vec::new() }
+    Point { job, infeasible: None, solved: None, searched: Searched::No, merged: Vec::new() }
 }
 
 /// A table of N × mass flow × strategy; `edit` sets the cells of each point.

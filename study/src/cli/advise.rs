@@ -15,9 +15,10 @@ use crate::accuracy::{
 use crate::input::fraction::{RELATIVE_ERROR, relative_error};
 use crate::input::keys;
 use crate::input::value::{Value, brief_number};
+use crate::job::point::Point;
 use crate::platform::error::{Error, Result};
 use crate::platform::nearest::did_you_mean;
-use crate::study::{Study, StudyPoint};
+use crate::study::{Study, features};
 use billow_solver::scene::ModelKind;
 
 /// Relative error that measures must keep where neither the command nor the study gives one.
@@ -51,7 +52,7 @@ pub struct Args {
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let study = Study::load(&args.study, &args.set.set)?;
     let tolerances = tolerances(args, &study)?;
-    let scenes: Vec<_> = study.points().iter().filter_map(StudyPoint::features).collect();
+    let scenes: Vec<_> = study.points().iter().filter_map(features).collect();
     let table = MeshErrors::shipped();
     let choices = choices(table, &scenes).map_err(|gap| {
         let allowed = "scenes that the table of mesh errors covers: docs/guide/accuracy.md";
@@ -80,7 +81,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
 
 /// What to do where the table does not cover a study.
 fn hint(study: &Study) -> String {
-    let meshless = |point: &&StudyPoint| point.scene.solver.model != ModelKind::Film;
+    let meshless = |point: &&Point| point.job.scene.solver.model != ModelKind::Film;
     match study.points().iter().find(meshless) {
         None => {
             let search = study.searched();
@@ -93,7 +94,7 @@ fn hint(study: &Study) -> String {
             )
         }
         Some(point) => {
-            let model = keys::model(point.scene.solver.model).name;
+            let model = keys::model(point.job.scene.solver.model).name;
             format!(
                 "run one point with \"grid\": {{\"model\": [\"film\", \"{model}\"]}} and compare the two: \
                  billow compare STUDY --by model --base film"
@@ -224,7 +225,7 @@ fn saving(study: &Study, table: &MeshErrors, cost_of_method: f64) -> String {
     let points = study.points();
     // A point runs on each of its meshes.
     let runs_of_one = study.meshes().len().max(1) as f64;
-    let all: f64 = points.iter().map(|point| cost(table, &Method::of(&point.scene))).sum();
+    let all: f64 = points.iter().map(|point| cost(table, &Method::of(&point.job.scene))).sum();
     let now = all * runs_of_one / points.len().max(1) as f64;
     if cost_of_method < now {
         format!("{:.1} times cheaper than now", now / cost_of_method)
@@ -236,7 +237,7 @@ fn saving(study: &Study, table: &MeshErrors, cost_of_method: f64) -> String {
 /// What a study file must have for a method; the model only where a point has another.
 fn setting(method: &Method, study: &Study) -> String {
     let mut solver = Vec::new();
-    if study.points().iter().any(|point| point.scene.solver.model != method.model) {
+    if study.points().iter().any(|point| point.job.scene.solver.model != method.model) {
         solver.push(format!("\"model\": \"{}\"", keys::model(method.model).name));
     }
     if method.meshes.len() > 1 {

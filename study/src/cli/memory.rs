@@ -7,9 +7,10 @@ use billow_solver::scene::Scene;
 
 use super::print::count;
 use crate::job::memory;
+use crate::job::point::Point;
 use crate::platform::error::{Error, Result};
 use crate::platform::memory::{Limit, limits, size, smallest};
-use crate::study::{Study, StudyPoint};
+use crate::study::Study;
 
 /// Names of jobs in a note, at most. Chosen: one line.
 const MAX_NAMES: usize = 3;
@@ -57,12 +58,12 @@ impl Memory {
         let allowed = usable.min(of_study.unwrap_or(u64::MAX));
         let (mut names, mut number, mut needed) = (Vec::new(), 0, 0);
         for point in feasible(study) {
-            let total = memory::estimate(&point.scene).total;
+            let total = memory::estimate(&point.job.scene).total;
             if total > allowed {
                 number += 1;
                 needed = total.max(needed);
                 if number <= MAX_NAMES {
-                    names.push(study.label(&point.parameters, study.display_units()));
+                    names.push(study.label(&point.job.parameters, study.display_units()));
                 }
             }
         }
@@ -90,7 +91,7 @@ impl Memory {
     /// What the largest job that fits needs, as text; `None` without a job that needs more than the program
     /// itself.
     pub fn forecast(&self, study: &Study) -> Option<String> {
-        let all = feasible(study).map(|point| memory::estimate(&point.scene).total);
+        let all = feasible(study).map(|point| memory::estimate(&point.job.scene).total);
         let largest = all.filter(|needed| *needed <= self.usable()).max()?;
         let limit = self.limit.filter(|_| largest >= MIN_SHOWN)?;
         let together = usize::try_from(self.usable() / largest).unwrap_or(usize::MAX).max(1);
@@ -111,7 +112,7 @@ impl Memory {
 /// Memory of a job below which `plan` says nothing, bytes. Chosen: every machine has it.
 const MIN_SHOWN: u64 = 50_000_000;
 
-fn feasible(study: &Study) -> impl Iterator<Item = &StudyPoint> {
+fn feasible(study: &Study) -> impl Iterator<Item = &Point> {
     study.points().iter().filter(|point| point.infeasible.is_none())
 }
 

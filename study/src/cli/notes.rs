@@ -10,8 +10,9 @@ use crate::accuracy::{MeshErrors, Method, Tolerances, all_but_peak_vz, choice};
 use crate::input::keys::numerical::{MESH_PARAMETER, SEED};
 use crate::input::keys::{MODELS, Model};
 use crate::input::value::{Value, brief_number};
+use crate::job::point::Point;
 use crate::study::ground::pressure_below_ambient;
-use crate::study::{Study, StudyPoint};
+use crate::study::{Study, features};
 
 /// Prints the warnings about values of the study: before anything runs.
 pub fn print_warnings(study: &Study) {
@@ -31,7 +32,7 @@ pub fn print(study: &Study) {
 }
 
 fn of_points(study: &Study) -> Vec<String> {
-    let has = |model| study.points().iter().any(|point| point.scene.solver.model == model);
+    let has = |model| study.points().iter().any(|point| point.job.scene.solver.model == model);
     let mut lines: Vec<String> = Vec::new();
     if let Some(meshes) = study.chosen_meshes() {
         let method = Method { model: ModelKind::Film, meshes: meshes.to_vec() };
@@ -47,8 +48,8 @@ fn of_points(study: &Study) -> Vec<String> {
     if let Some(given) = subdivisions.filter(|key| key.value != key.key.default_value()) {
         lines.push(format!("note: solver.meshes replaces design.subdivisions {}", given.value));
     }
-    let empty = |point: &&crate::study::StudyPoint| {
-        let gas = &point.scene.gas;
+    let empty = |point: &&Point| {
+        let gas = &point.job.scene.gas;
         gas.windows.is_empty() && gas.initial_mass <= 0.0
     };
     let without = study.points().iter().filter(empty).count();
@@ -72,8 +73,8 @@ fn of_points(study: &Study) -> Vec<String> {
             lines.push(format!("{gives}, {not}"));
         }
     }
-    let stiff = |point: &StudyPoint| {
-        point.scene.solver.model == ModelKind::Film && point.scene.film.compression > 0.0
+    let stiff = |point: &Point| {
+        point.job.scene.solver.model == ModelKind::Film && point.job.scene.film.compression > 0.0
     };
     if study.points().iter().any(stiff) {
         lines.push(
@@ -90,7 +91,7 @@ fn of_points(study: &Study) -> Vec<String> {
 /// # Errors
 /// Why the table does not cover the study.
 fn errors(study: &Study, method: &Method, tolerances: &Tolerances) -> Result<String, String> {
-    let scenes: Vec<_> = study.points().iter().filter_map(StudyPoint::features).collect();
+    let scenes: Vec<_> = study.points().iter().filter_map(features).collect();
     let choice = choice(MeshErrors::shipped(), method.clone(), &scenes)?;
     let errors = choice.errors_text(tolerances);
     Ok(format!(": {errors}; cost {:.1} % of n 24", 100.0 * choice.cost))
@@ -113,7 +114,7 @@ fn of_meshes(study: &Study) -> Option<String> {
 
 /// A note on capsules whose gas has less than ambient pressure at the start.
 fn below_ambient(study: &Study) -> Option<String> {
-    let below = study.points().iter().filter_map(|point| pressure_below_ambient(&point.scene));
+    let below = study.points().iter().filter_map(|point| pressure_below_ambient(&point.job.scene));
     let (count, smallest) =
         below.fold((0, f64::INFINITY), |(count, least), p| (count + 1, f64::min(least, p)));
     (count > 0).then(|| {
@@ -128,8 +129,8 @@ fn below_ambient(study: &Study) -> Option<String> {
 
 /// A note on points with friction whose integrator has none: each ends as invalid.
 fn refused_by_integrators(study: &Study) -> Option<String> {
-    let refusal = |point: &StudyPoint| {
-        let (solver, contact) = (&point.scene.solver, &point.scene.contact);
+    let refusal = |point: &Point| {
+        let (solver, contact) = (&point.job.scene.solver, &point.job.scene.contact);
         let entry =
             (solver.model == ModelKind::Film).then(|| integrators::entry(solver.integrator))?;
         let Refusal { unknown, allowed } = entry.refuses_friction(contact.friction)?;

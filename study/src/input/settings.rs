@@ -1,36 +1,66 @@
 //! The values of the keys of a file that hold one value: read from its tree, with defaults.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use billow_solver::scene::Support;
+use serde_json::{Map, json};
+
 use crate::input::json::Json;
-use crate::input::keys::{self, Key, Named, Table, pick};
-use crate::input::plausible;
+use crate::input::keys::{KEYS, Key, Named, STUDY, Table, pick, position};
+use crate::input::object::{object, read};
 use crate::input::source::{Source, shown};
-use crate::input::value::Value;
+use crate::input::strategy::{Strategy, read_strategy};
+use crate::input::supports;
+use crate::input::value::{Value, json_value};
 use crate::platform::error::InputError;
+use crate::platform::nearest::{did_you_mean, nearest};
 
 /// The value of every key of a table, in its order; `Null` where absent.
 #[derive(Debug, Clone)]
 pub(crate) struct Settings {
     table: &'static Table,
     values: Vec<Value>,
+    /// The inflation strategies of a study, by name.
+    pub strategies: BTreeMap<String, Strategy>,
+    /// What holds the capsule of a study.
+    pub supports: Vec<Support>,
 }
 
 impl PartialEq for Settings {
     fn eq(&self, other: &Self) -> bool {
-        std::ptr::eq(self.table, other.table) && self.values == other.values
+        std::ptr::eq(self.table, other.table)
+            && (&self.values, &self.strategies, &self.supports)
+                == (&other.values, &other.strategies, &other.supports)
     }
 }
 
 impl Settings {
     /// Every key at its default.
     pub fn new(table: &'static Table) -> Self {
-        Self { table, values: table.keys.iter().map(|key| key.default_value()).collect() }
+        let values = table.keys.iter().map(|key| key.default_value()).collect();
+        Self { table, values, strategies: BTreeMap::new(), supports: Vec::new() }
     }
 
-    /// Values in the order of the table.
-    pub fn values(&self) -> &[Value] {
-        &self.values
+    /// Reads a study: the value of every key, its strategies and supports.
+    ///
+    /// # Errors
+    /// The first key with a value that it does not allow; a name that is no key.
+    pub fn of_study(tree: &Json, source: &Source) -> Result<Self, InputError> {
+        check_version(tree, source)?;
+        let mut settings = Self::new(&STUDY);
+        settings.read("", tree, source)?;
+        settings.check_stepping(tree, source)?;
+        settings.supports = supports::read(tree.get("supports"), source)?;
+        settings.strategies.insert("direct".to_owned(), Strategy::direct());
+        if let Some(json) = tree.get("strategies") {
+            for (name, value) in object(json, &STUDY, "strategies", source)? {
+                let strategy = read_strategy(name, value, source)?;
+                settings.strategies.insert(name.clone(), strategy);
+            }
+        }
+        settings.check_strategy(settings.strategy_name(), "strategy", source)?;
+        Ok(settings)
     }
 
     /// The value of a key, by its position in the table.
@@ -77,6 +107,72 @@ impl Settings {
             }
         }
         Ok(())
+    }
+
+    /// Refuses a step that is both adaptive and fixed; a fixed one replaces the default tolerance.
+    fn check_stepping(&mut self, tree: &Json, source: &Source) -> Result<(), InputError> {
+        let stepping = tree.get("solver").and_then(|solver| solver.get("stepping"));
+        if let Some(stepping) = stepping {
+            let given = |key: &str| stepping.get(key).is_some();
+            if given("adaptive") && given("fixed") {
+                return Err(source.error(
+                    "solver.stepping",
+                    &stepping.brief(),
+                    "gives both adaptive and fixed",
+                    "one of {\"adaptive\": 1e-6}, {\"fixed\": \"10 us\"}",
+                ));
+            }
+            if given("fixed") {
+                let index = const { position(KEYS, "solver.stepping.fixed") };
+                let fixed = self.at(index).clone();
+                self.set(index, fixed);
+            }
+        }
+        Ok(())
+    }
+
+    /// Name of the strategy.
+    pub fn strategy_name(&self) -> &str {
+        self.text("strategy").unwrap_or_default()
+    }
+
+    /// Refuses a strategy that the study does not have.
+    pub fn check_strategy(&self, name: &str, key: &str, source: &Source) -> Result<(), InputError> {
+        if self.strategies.contains_key(name) {
+            return Ok(());
+        }
+        let known: Vec<&str> = self.strategies.keys().map(String::as_str).collect();
+        let near = nearest(name, known.iter().copied());
+        let near = near.map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
+        let mut error = source.error(
+            key,
+            &Json::Text(name.to_owned()).brief(),
+            format!("is not a strategy of this study{near}"),
+            known.join(", "),
+        );
+        "name one of these, or define it under strategies".clone_into(&mut error.hint);
+        Err(error)
+    }
+
+    /// Settings, strategies and supports, with every value they have.
+    pub fn to_json(&self) -> serde_json::Value {
+        let mut json = json!({});
+        for (key, value) in self.table.keys.iter().zip(&self.values) {
+            if *value == Value::Null {
+                continue;
+            }
+            let member = key.path.split('.').fold(&mut json, |object, part| &mut object[part]);
+            *member = json_value(value);
+        }
+        let strategies = self.strategies.iter();
+        let strategies = strategies.map(|(name, strategy)| (name.clone(), strategy.to_json()));
+        json["strategies"] = strategies.collect::<Map<_, _>>().into();
+        let supports = self
+            .supports
+            .iter()
+            .map(|support| json!({"on": supports::place_name(support.on), "fix": support.fix}));
+        json["supports"] = supports.collect::<Vec<_>>().into();
+        json
     }
 
     /// The value of a key by its path.
@@ -202,75 +298,6 @@ pub(crate) fn check_sample_interval(
     ))
 }
 
-/// Reads one value of a key; `path` is where the file gives it. A value that is not plausible is a
-/// warning of the source.
-pub(crate) fn read(
-    key: &Key,
-    json: &Json,
-    path: &str,
-    source: &Source,
-) -> Result<Value, InputError> {
-    let value = read_silently(key, json, path, source)?;
-    if let Some(implausible) = plausible::check(key, json, &value) {
-        source.warn(path, &json.brief(), implausible);
-    }
-    Ok(value)
-}
-
-/// Reads one value of a key that no user wrote, as a value between the ends of a range.
-pub(crate) fn read_silently(
-    key: &Key,
-    json: &Json,
-    path: &str,
-    source: &Source,
-) -> Result<Value, InputError> {
-    key.read(json).map_err(|refusal| {
-        let mut error = source.error(path, &json.brief(), refusal.problem, refusal.allowed);
-        error.hint = match plausible::meant(key, json) {
-            Some(text) => format!("if {text} is meant, write {text:?}"),
-            None => format!("write it as in {}", key.sample()),
-        };
-        error
-    })
-}
-
-/// The members of an object.
-pub(crate) fn object<'a>(
-    json: &'a Json,
-    table: &Table,
-    path: &str,
-    source: &Source,
-) -> Result<&'a [(String, Json)], InputError> {
-    match json {
-        Json::Object(members) => Ok(members),
-        other => Err(source.error(
-            path,
-            &other.brief(),
-            format!("is {}, not an object", other.kind()),
-            match table.children(path) {
-                names if names.is_empty() => "an object".to_owned(),
-                names => names.join(", "),
-            },
-        )),
-    }
-}
-
-/// The items of a list.
-pub(crate) fn list<'a>(
-    json: &'a Json,
-    path: &str,
-    source: &Source,
-    allowed: &str,
-) -> Result<&'a [Json], InputError> {
-    match json {
-        Json::List(items) => Ok(items),
-        other => {
-            let problem = format!("is {}, not a list", other.kind());
-            Err(source.error(path, &other.brief(), problem, allowed))
-        }
-    }
-}
-
 /// The error of a name that no key of the table has, with the nearest name that one has.
 fn unknown(
     table: &Table,
@@ -284,8 +311,8 @@ fn unknown(
     let mut problem = format!("is not a key of {}", table.what);
     if prefix.is_empty() && name == "maps" {
         problem.push_str("; a file of maps runs with make stability");
-    } else if let Some(near) = keys::nearest(name, known.iter().copied()) {
-        let _ = write!(problem, "; did you mean {near}?");
+    } else if let Some(question) = did_you_mean(name, known.iter().copied()) {
+        let _ = write!(problem, "; {question}");
     } else if let Some(elsewhere) = table.find(name) {
         let _ = write!(problem, "; did you mean {}?", table.keys[elsewhere].path);
     }

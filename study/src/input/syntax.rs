@@ -311,6 +311,10 @@ fn explained(error: &ParseError, text: &str) -> Fault {
         _ if is_word && number.parse::<f64>().is_ok() => {
             say("a number with a unit is a text", &format!("write \"{number} {word}\""))
         }
+        _ if is_word && text[..offset].ends_with('"') => say(
+            "the text before this has no closing quote, or a quote inside",
+            "write the quote at the end of the text, and \\\" inside a text",
+        ),
         Kind::ExpectedComma => {
             say("a comma is missing after this value", "write a comma here, or close the bracket")
         }

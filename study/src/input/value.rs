@@ -63,6 +63,7 @@ macro_rules! from {
 from! {
     bool, value => Self::Bool(value);
     f64, value => Self::Number(value);
+    i64, value => Self::Integer(value);
     u32, value => Self::Integer(value.into());
     u64, value => Self::Integer(i64::try_from(value).unwrap_or(i64::MAX));
     usize, value => Self::Integer(i64::try_from(value).unwrap_or(i64::MAX));

@@ -38,8 +38,21 @@ pub struct Point {
     pub infeasible: Option<Infeasible>,
     /// Solved dimensions of the fold pattern; `None` for an infeasible point.
     pub solved: Option<Solved>,
+    /// Whether a search runs along it.
+    pub searched: Searched,
     /// Parameters of later points that resolve to the same job.
     pub merged: Vec<Parameters>,
+}
+
+/// Whether a search runs along a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Searched {
+    /// It is a single point that gives the key of the search, or there is no search.
+    No,
+    /// It is a point of the product.
+    InProduct,
+    /// It is a single point.
+    Single,
 }
 
 /// Dimensions that the solution of the fold pattern gives.

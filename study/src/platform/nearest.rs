@@ -35,6 +35,11 @@ pub fn did_you_mean<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Opt
     nearest(name, known).map(|near| format!("did you mean {near}?"))
 }
 
+/// What a problem says of the nearest name: "; did you mean thickness?", or nothing.
+pub fn or_nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
+    did_you_mean(name, known).map_or_else(String::new, |question| format!("; {question}"))
+}
+
 /// Number of edits (insert, delete, replace, swap two neighbours) from one word to another: the
 /// optimal string alignment distance.
 fn distance(a: &str, b: &str) -> usize {

@@ -18,7 +18,7 @@ use billow_solver::scene::{
 use crate::input::value::Value;
 use crate::job::control::{Order, Task};
 use crate::job::executor::{Executor, Outcome};
-use crate::job::point::{Infeasible, Point};
+use crate::job::point::{Infeasible, Point, Searched};
 use crate::job::{Job, JobId};
 use crate::study::plan::Generation;
 
@@ -157,6 +157,7 @@ pub fn generation(jobs: u32) -> Generation {
                 nearest: Vec::new(),
             }),
             solved: None,
+            searched: Searched::No,
             merged: Vec::new(),
         })
         .collect();

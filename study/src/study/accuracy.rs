@@ -7,17 +7,19 @@
 //! A number is the tolerance of every promised measure but `peak_vz`, which scatters by more from seed to seed.
 //! The choice stands in study.json beside the errors, so that another version of the table changes no stored study.
 
-use billow_solver::scene::ModelKind;
+use billow_solver::scene::{ModelKind, Scene};
 
-use super::StudyPoint;
-use crate::accuracy::{Choice, MeshErrors, PROMISED, Tolerances, all_but_peak_vz, choices};
+use crate::accuracy::{
+    Choice, Features, MeshErrors, PROMISED, Tolerances, all_but_peak_vz, choices,
+};
 use crate::input::fraction::{RELATIVE_ERROR, relative_error_in};
 use crate::input::json::Json;
 use crate::input::keys::STUDY;
-use crate::input::settings::object;
+use crate::input::object::object;
 use crate::input::source::Source;
+use crate::job::point::Point;
 use crate::platform::error::InputError;
-use crate::platform::nearest::nearest;
+use crate::platform::nearest::or_nearest;
 
 /// The section.
 pub(super) const ACCURACY: &str = "accuracy";
@@ -54,8 +56,7 @@ impl Accuracy {
             }
             let names = || PROMISED.iter().map(|promised| promised.measure.name());
             let Some(index) = names().position(|known| known == name) else {
-                let near = nearest(name, names())
-                    .map_or_else(String::new, |near| format!("; did you mean {near}?"));
+                let near = or_nearest(name, names());
                 let problem = format!("is not a measure with a known mesh error{near}");
                 let allowed = names().collect::<Vec<_>>().join(", ");
                 return Err(source.error(&path, &value.brief(), problem, allowed));
@@ -73,17 +74,17 @@ impl Accuracy {
     ///
     /// # Errors
     /// Points that the table does not cover; errors that no method keeps.
-    pub fn choose(&mut self, points: &[StudyPoint], source: &Source) -> Result<(), InputError> {
+    pub fn choose(&mut self, points: &[Point], source: &Source) -> Result<(), InputError> {
         let refuse = |problem: String, allowed: String| {
             Err(source.error(ACCURACY, &self.shown(), problem, allowed))
         };
-        if points.iter().any(|point| point.scene.solver.model != ModelKind::Film) {
+        if points.iter().any(|point| point.job.scene.solver.model != ModelKind::Film) {
             return refuse(
                 "chooses the meshes of the model film".to_owned(),
                 "solver.model film".to_owned(),
             );
         }
-        let scenes: Vec<_> = points.iter().filter_map(StudyPoint::features).collect();
+        let scenes: Vec<_> = points.iter().filter_map(features).collect();
         let table = MeshErrors::shipped();
         let film = match choices(table, &scenes) {
             Ok(choices) => {
@@ -138,6 +139,12 @@ impl Accuracy {
             _ => Json::Object(self.members()).brief(),
         }
     }
+}
+
+/// The scene of a point with the features on which mesh errors depend; `None` for an infeasible point.
+pub(crate) fn features(point: &Point) -> Option<(&Scene, Features)> {
+    let (scene, solved) = (&*point.job.scene, point.solved?);
+    Some((scene, Features::of(scene, solved.top_radius, solved.height)))
 }
 
 /// A relative error of a study file.

@@ -4,55 +4,45 @@ use std::collections::HashMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
+use billow_solver::geometry::fold::{FoldDesign, FoldError, FoldPattern};
 use billow_solver::models;
+use billow_solver::scene::Scene;
 use billow_solver::scene::error::SceneError;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
-use super::base::Base;
-use super::fold::{self, DesignKey, Fold};
+use super::filter::{Filter, Fold};
 use super::grid::{Axis, AxisKind, Grid};
-use super::plan_size::PlanSize;
-use super::point::{Searched, StudyPoint};
-use super::{resolve, variables};
-use crate::input::expression::Expression;
+use super::resolve;
 use crate::input::keys::{self, KEYS};
+use crate::input::settings::Settings;
 use crate::input::source::Source;
 use crate::input::value::{Value, json_value};
-use crate::job::Parameters;
-use crate::job::point::Solved;
+use crate::job::point::{Infeasible, Point, Searched, Solved};
+use crate::job::{Job, JobId, Parameters};
 use crate::platform::error::InputError;
 
-/// The points that a study plans first.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Points {
-    /// The points in plan order: those of the product that the filter keeps, the first axis slowest, then
-    /// the single points, which it does not concern.
-    pub points: Vec<StudyPoint>,
-    /// Number of points of the product that the filter removed.
-    pub filtered: usize,
-}
-
-/// The points of a study.
+/// The points that a study plans first, and how many of the product its filter removed.
 pub(super) fn points(
-    base: &Base,
+    settings: &Settings,
     grid: &Grid,
     source: &Source,
-    size: PlanSize,
-) -> Result<Points, InputError> {
-    let (product, count) = count(grid, source, size)?;
-    let mut expansion = Expansion::new(base, grid, source);
+    max_points: usize,
+) -> Result<(Vec<Point>, usize), InputError> {
+    let (product, count) = count(grid, source, max_points)?;
+    let mut expansion = Expansion::new(settings, grid, source);
     if grid.search.is_some() {
         expansion.searched = Searched::InProduct;
     }
     let axes: Vec<&Axis> = grid.axes.iter().collect();
     let mut filtered = 0;
-    let mut point = base.clone();
+    let mut point = settings.clone();
     for number in 0..product {
         set_axes(&mut point, grid, &axes, number);
         filtered += usize::from(!expansion.add(&point, grid.filter.as_ref())?);
     }
     let searched = grid.search.as_ref().map(|search| search.column);
     for values in &grid.points {
-        let mut point = base.clone();
+        let mut point = settings.clone();
         for (column, value) in values {
             grid.columns[*column].target.set(&mut point, value.clone());
         }
@@ -73,32 +63,32 @@ pub(super) fn points(
         let allowed = "a condition that at least one point meets";
         return Err(source.error("grid.filter", text, problem, allowed));
     }
-    Ok(Points { points: expansion.points, filtered })
+    Ok((expansion.into_points(), filtered))
 }
 
 /// The runs of one searched point, with these values by column; those of replicates are not used.
 pub(super) fn points_at(
-    base: &Base,
+    settings: &Settings,
     grid: &Grid,
     source: &Source,
     values: &[Value],
     searched: Searched,
-) -> Result<Vec<StudyPoint>, InputError> {
-    let mut expansion = Expansion::new(base, grid, source);
+) -> Result<Vec<Point>, InputError> {
+    let mut expansion = Expansion::new(settings, grid, source);
     expansion.searched = searched;
-    let mut point = base.clone();
+    let mut point = settings.clone();
     for (column, value) in grid.columns.iter().zip(values) {
         column.target.set(&mut point, value.clone());
     }
     // The filter does not concern single points.
     let filter = grid.filter.as_ref().filter(|_| searched == Searched::InProduct);
     expansion.add_replicates(&point, filter)?;
-    Ok(expansion.points)
+    Ok(expansion.into_points())
 }
 
 /// Sets the values of the combination with this number. The last axis varies fastest; axes are independent,
 /// so the order of setting is free.
-fn set_axes(point: &mut Base, grid: &Grid, axes: &[&Axis], number: usize) {
+fn set_axes(point: &mut Settings, grid: &Grid, axes: &[&Axis], number: usize) {
     let mut rest = number;
     for Axis { columns, rows, .. } in axes.iter().rev() {
         let row = &rows[rest % rows.len()];
@@ -113,7 +103,7 @@ fn set_axes(point: &mut Base, grid: &Grid, axes: &[&Axis], number: usize) {
 ///
 /// # Errors
 /// When a plan may not have as many.
-fn count(grid: &Grid, source: &Source, size: PlanSize) -> Result<(usize, usize), InputError> {
+fn count(grid: &Grid, source: &Source, max_points: usize) -> Result<(usize, usize), InputError> {
     let has_axes = grid.axes.iter().any(|axis| !axis.kind.repeats());
     let product = match (has_axes, grid.points.is_empty()) {
         // Without axes, single points stand alone; without either, the study is one point.
@@ -123,13 +113,12 @@ fn count(grid: &Grid, source: &Source, size: PlanSize) -> Result<(usize, usize),
     let single = grid.single_points().checked_mul(grid.replicate_count());
     let all = product.zip(single).and_then(|(product, single)| product.checked_add(single));
     if let (Some(product), Some(all)) = (product, all)
-        && all <= size.points
+        && all <= max_points
     {
         return Ok((product, all));
     }
-    let max = size.points;
     let size = all.map_or_else(|| "more than 10^19".to_owned(), |count| count.to_string());
-    let allowed = format!("up to {max} points");
+    let allowed = format!("up to {max_points} points");
     let mut error = source.error("grid", "", format!("has {size} points"), allowed);
     error.hint = format!(
         "give {} fewer values; a search finds a border with few points ({{\"bisect\": [low, high], \"on\": …}}); a \
@@ -152,21 +141,42 @@ fn longest_axes(grid: &Grid) -> String {
     if texts.is_empty() { "grid.points".to_owned() } else { texts.join(" and ") }
 }
 
+/// The bits of a design, to find its fold again.
+fn bits(design: &FoldDesign) -> [Option<u64>; 12] {
+    [
+        Some(design.fit as u64),
+        Some(design.panels.into()),
+        Some(design.storeys.into()),
+        Some(design.bottom_radius.to_bits()),
+        design.top_radius.map(f64::to_bits),
+        design.height.map(f64::to_bits),
+        design.half_angle.map(f64::to_bits),
+        design.alpha1_over_phi.map(f64::to_bits),
+        Some(design.chirality as u64),
+        Some(design.stowed_height.to_bits()),
+        Some(design.subdivisions.into()),
+        Some(design.caps as u64),
+    ]
+}
+
+/// A point before its job has an id.
+type Resolved = (Parameters, Arc<Scene>, Option<Infeasible>, Option<Solved>, Searched);
+
 struct Expansion<'a> {
-    base: &'a Base,
+    settings: &'a Settings,
     grid: &'a Grid,
     source: &'a Source,
     /// Whether a search runs along the points that are added.
     searched: Searched,
     /// Designs already solved: points that share a design share its fold.
-    folds: HashMap<DesignKey, Rc<Fold>>,
-    points: Vec<StudyPoint>,
+    folds: HashMap<[Option<u64>; 12], Rc<Fold>>,
+    points: Vec<Resolved>,
 }
 
 impl<'a> Expansion<'a> {
-    fn new(base: &'a Base, grid: &'a Grid, source: &'a Source) -> Self {
+    fn new(settings: &'a Settings, grid: &'a Grid, source: &'a Source) -> Self {
         Self {
-            base,
+            settings,
             grid,
             source,
             searched: Searched::No,
@@ -178,8 +188,8 @@ impl<'a> Expansion<'a> {
     /// Adds a point with all values of its replicates, unless the filter removes it.
     fn add_replicates(
         &mut self,
-        point: &Base,
-        filter: Option<&Expression>,
+        point: &Settings,
+        filter: Option<&Filter>,
     ) -> Result<(), InputError> {
         let axes: Vec<&Axis> = self.grid.replicates().collect();
         for number in 0..self.grid.replicate_count() {
@@ -191,21 +201,23 @@ impl<'a> Expansion<'a> {
     }
 
     /// Adds a point, unless the filter removes it; `false` for a removed point.
-    fn add(&mut self, point: &Base, filter: Option<&Expression>) -> Result<bool, InputError> {
-        debug_assert_eq!(self.base.supports, point.supports, "supports are not an axis");
-        let design = point.settings.design(self.source);
+    fn add(&mut self, point: &Settings, filter: Option<&Filter>) -> Result<bool, InputError> {
+        debug_assert_eq!(self.settings.supports, point.supports, "supports are not an axis");
+        let design = point.design(self.source);
         let design = design.map_err(|error| self.at_point(point, error))?;
-        let fold = self.folds.entry(fold::design_key(&design));
-        let fold = Rc::clone(fold.or_insert_with(|| Rc::new(fold::solve(&design))));
+        let fold = self.folds.entry(bits(&design));
+        let fold = Rc::clone(fold.or_insert_with(|| Rc::new(FoldPattern::new(&design))));
         if let Some(filter) = filter
-            && !filter.holds(&variables::values(&self.grid.columns, point, &fold))
+            && !filter.holds(point, &fold)
         {
             return Ok(false);
         }
         let (infeasible, solved) = match &*fold {
-            Fold::Solved(pattern) => (None, Some(Solved::of(pattern))),
-            Fold::Infeasible(infeasible) => (Some(infeasible.clone()), None),
-            Fold::Invalid { key, problem } => {
+            Ok(pattern) => (None, Some(Solved::of(pattern))),
+            Err(FoldError::Infeasible { reason, nearest }) => {
+                (Some(Infeasible { reason: reason.clone(), nearest: nearest.clone() }), None)
+            }
+            Err(FoldError::Invalid { key, problem }) => {
                 let error = self.invalid_design(point, key, problem);
                 return Err(self.at_point(point, error));
             }
@@ -217,20 +229,28 @@ impl<'a> Expansion<'a> {
             })
             .map_err(|error| self.at_point(point, error))?;
         let parameters = self.parameters(point);
-        let searched = self.searched;
         let scene = Arc::new(scene);
-        self.points.push(StudyPoint { parameters, scene, infeasible, solved, searched });
+        self.points.push((parameters, scene, infeasible, solved, self.searched));
         Ok(true)
     }
 
+    /// The points with their jobs; ids are hashed on all cores.
+    fn into_points(self) -> Vec<Point> {
+        let point = |(parameters, scene, infeasible, solved, searched): Resolved| {
+            let job = Job { id: JobId::of(&scene), parameters, scene };
+            Point { job, infeasible, solved, searched, merged: Vec::new() }
+        };
+        self.points.into_par_iter().map(point).collect()
+    }
+
     /// The varied parameters of a point.
-    fn parameters(&self, point: &Base) -> Parameters {
+    fn parameters(&self, point: &Settings) -> Parameters {
         let columns = self.grid.columns.iter();
         columns.map(|column| (column.name.clone(), column.target.value(point))).collect()
     }
 
     /// The error, with the point it belongs to.
-    fn at_point(&self, point: &Base, mut error: InputError) -> InputError {
+    fn at_point(&self, point: &Settings, mut error: InputError) -> InputError {
         if !self.grid.columns.is_empty() && error.hint.is_empty() {
             let parameters: Vec<String> = self
                 .parameters(point)
@@ -243,12 +263,12 @@ impl<'a> Expansion<'a> {
     }
 
     /// The error of a design that contradicts itself.
-    fn invalid_design(&self, point: &Base, key: &str, problem: &str) -> InputError {
+    fn invalid_design(&self, point: &Settings, key: &str, problem: &str) -> InputError {
         let path = format!("design.{key}");
         let Some(index) = keys::index(&path) else {
             return self.source.error(&path, "", problem, "");
         };
-        let value = match point.settings.at(index) {
+        let value = match point.at(index) {
             Value::Null => String::new(),
             value => json_value(value).to_string(),
         };

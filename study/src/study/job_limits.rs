@@ -77,7 +77,7 @@ pub fn with_options(mut limits: JobLimits, options: &[String]) -> Result<JobLimi
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::{PlanSize, Study};
+    use crate::study::{MAX_POINTS, Study};
 
     fn study(limits: &str) -> Study {
         let text = format!(
@@ -85,7 +85,7 @@ mod tests {
                 "solver": {{"end_time": 0.1, "model": "piston"}}, "gas": {{"mass_flow_rate": 0.005}}
                 {limits}}}"#
         );
-        Study::from_text(&text, "s.json", "s", &[], PlanSize::default()).unwrap()
+        Study::from_text(&text, "s.json", "s", &[], MAX_POINTS).unwrap()
     }
 
     #[test]
@@ -103,7 +103,7 @@ mod tests {
         assert_eq!(ids(&limited), ids(&study("")));
         // The resolved study is a study with the same limits.
         let text = serde_json::to_string(&limited.resolved()).unwrap();
-        let again = Study::from_text(&text, "s.json", "s", &[], PlanSize::default()).unwrap();
+        let again = Study::from_text(&text, "s.json", "s", &[], MAX_POINTS).unwrap();
         assert_eq!(again.job_limits(), limits);
     }
 

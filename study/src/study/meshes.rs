@@ -5,7 +5,6 @@
 
 use billow_solver::scene::ModelKind;
 
-use super::StudyPoint;
 use super::grid::{Axis, AxisKind, Context, Grid};
 use super::target::{Column, Target};
 use crate::accuracy::MeshErrors;
@@ -13,6 +12,7 @@ use crate::input::json::Json;
 use crate::input::keys::{self, KEYS, position, short_name};
 use crate::input::source::Source;
 use crate::input::value::Value;
+use crate::job::point::Point;
 use crate::platform::error::InputError;
 
 /// The key, for errors.
@@ -90,12 +90,14 @@ impl Grid {
 /// A point with a model other than film, in a study with several meshes.
 pub(super) fn refuse_other_models(
     grid: &Grid,
-    points: &[StudyPoint],
+    points: &[Point],
     source: &Source,
 ) -> Result<(), InputError> {
     let meshes = grid.meshes();
-    let other =
-        points.iter().map(|point| point.scene.solver.model).find(|kind| *kind != ModelKind::Film);
+    let other = points
+        .iter()
+        .map(|point| point.job.scene.solver.model)
+        .find(|kind| *kind != ModelKind::Film);
     let Some(other) = other.filter(|_| !meshes.is_empty()) else { return Ok(()) };
     let problem = format!("has meshes, and the model {} has none", keys::model(other).name);
     let found = Json::List(meshes.iter().map(|n| Json::Integer(i64::from(*n))).collect());

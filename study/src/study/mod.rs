@@ -2,34 +2,29 @@
 //! scene.
 //!
 //! ```text
-//! text → Json → (--set) → Base + Grid → points: parameters, Scene, feasible or why not
+//! text → Json → (--set) → Settings + Grid → points: parameters, Scene, feasible or why not
 //! ```
 //! Every error of a study is found here, before anything runs.
 
 mod accuracy;
 mod axes;
-mod base;
 mod expand;
+mod filter;
 pub mod finished;
-mod fold;
 mod grid;
 pub(crate) mod ground;
 pub mod job_limits;
 mod meshes;
 mod parameters;
 pub mod plan;
-mod plan_size;
-mod point;
 mod range;
 mod replicates;
 mod resolve;
 mod result_limits;
 mod schedule;
 mod search;
-mod strategy;
 mod target;
 mod units;
-mod variables;
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -38,22 +33,25 @@ use crate::accuracy::Tolerances;
 use crate::input::json::Json;
 use crate::input::keys::STUDY;
 use crate::input::overrides;
+use crate::input::settings::Settings;
 use crate::input::source::Source;
 use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
 use crate::input::{study_file, syntax};
 use crate::job::limits::JobLimits;
+use crate::job::point::{Point, Searched};
 use crate::job::result_limit::ResultLimit;
 use crate::platform::error::{InputError, Result as BillowResult};
+pub(crate) use accuracy::features;
 use accuracy::{ACCURACY, Accuracy};
 pub use axes::{GridAxis, NoProduct};
-use base::Base;
-use expand::Points;
 use grid::{Context, Grid};
 pub use parameters::{StudyKey, Zipped};
-pub use plan_size::PlanSize;
-pub(crate) use point::{Searched, StudyPoint};
 pub use search::{Border, Criterion, Level, Outcome};
+
+/// Number of points of a grid, before its filter, at most (chosen: a quarter of a million are planned in
+/// seconds and fit in memory).
+pub const MAX_POINTS: usize = 250_000;
 
 /// The key of the units in which quantities are shown. It changes no job.
 pub(crate) const UNITS: &str = "units";
@@ -81,14 +79,17 @@ pub struct Study {
     warnings: Vec<String>,
     /// The units in which its quantities are shown.
     units: DisplayUnits,
-    base: Base,
+    settings: Settings,
     grid: Grid,
     /// What its results must meet to be safe.
     result_limits: Vec<ResultLimit>,
     /// The errors that its results must keep.
     accuracy: Option<Accuracy>,
-    /// Its points, resolved.
-    points: Points,
+    /// Its points in plan order: those of the product that the filter keeps, the first axis slowest, then
+    /// the single points, which it does not concern.
+    points: Vec<Point>,
+    /// Number of points of the product that the filter removed.
+    filtered: usize,
 }
 
 impl Study {
@@ -103,7 +104,7 @@ impl Study {
         let text = study_file::text_of(&bytes, &file)?;
         let stem =
             path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-        Ok(Self::from_text(text, &file, &stem, sets, PlanSize::default())?)
+        Ok(Self::from_text(text, &file, &stem, sets, MAX_POINTS)?)
     }
 
     /// Reads a study from its text. `file` is its name in errors, `stem` the name of the study where
@@ -116,10 +117,10 @@ impl Study {
         file: &str,
         stem: &str,
         sets: &[String],
-        size: PlanSize,
+        max_points: usize,
     ) -> Result<Self, InputError> {
         let tree = syntax::parse(text, file)?;
-        Self::from_tree(tree, file, stem, sets, size)
+        Self::from_tree(tree, file, stem, sets, max_points)
             .map_err(|error| syntax::with_place(error, text, file))
     }
 
@@ -132,7 +133,7 @@ impl Study {
         file: &str,
         stem: &str,
         sets: &[String],
-        size: PlanSize,
+        max_points: usize,
     ) -> Result<Self, InputError> {
         let mut source = Source::new(file);
         if !matches!(tree, Json::Object(_)) {
@@ -148,39 +149,45 @@ impl Study {
             return Err(InputError { hint: format!("billow solve {file}"), ..error });
         }
         let notes = overrides::apply(&mut tree, sets, &STUDY, &mut source)?;
-        let base = Base::read(&tree, &source)?;
+        let mut settings = Settings::of_study(&tree, &source)?;
         let result_limits = result_limits::read(tree.get(LIMITS), &source)?;
-        let context = Context { base: &base, limits: &result_limits, source: &source, size };
+        let context =
+            Context { settings: &settings, limits: &result_limits, source: &source, max_points };
         let mut grid = Grid::read(&tree, context)?;
         grid::refuse_varied(&grid, &source)?;
-        let units = units::read(&tree, &base, &source)?;
+        let units = units::read(&tree, &settings, &source)?;
         let mut accuracy = Accuracy::read(tree.get(ACCURACY), &source)?;
-        let mut base = base;
-        let mut points = expand::points(&base, &grid, &source, size)?;
+        let (mut points, mut filtered) = expand::points(&settings, &grid, &source, max_points)?;
         let chooses = accuracy.as_mut().filter(|accuracy| accuracy.meshes.is_empty());
         if let Some(accuracy) = chooses {
             accuracy::refuse_given_mesh(&tree, &source)?;
-            accuracy.choose(&points.points, &source)?;
+            accuracy.choose(&points, &source)?;
             accuracy::set_meshes(&mut tree, &accuracy.meshes);
-            base = Base::read(&tree, &source)?;
-            let context = Context { base: &base, limits: &result_limits, source: &source, size };
+            settings = Settings::of_study(&tree, &source)?;
+            let context = Context {
+                settings: &settings,
+                limits: &result_limits,
+                source: &source,
+                max_points,
+            };
             grid = Grid::read(&tree, context)?;
-            points = expand::points(&base, &grid, &source, size)?;
+            (points, filtered) = expand::points(&settings, &grid, &source, max_points)?;
         }
-        meshes::refuse_other_models(&grid, &points.points, &source)?;
-        let name = study_name(&base, stem, &source)?;
-        let (question, warnings) = (question(&base), source.warnings());
+        meshes::refuse_other_models(&grid, &points, &source)?;
+        let name = study_name(&settings, stem, &source)?;
+        let (question, warnings) = (question(&settings), source.warnings());
         Ok(Self {
             name,
             question,
             notes,
             warnings,
             units,
-            base,
+            settings,
             grid,
             result_limits,
             accuracy,
             points,
+            filtered,
         })
     }
 
@@ -236,14 +243,14 @@ impl Study {
 
     /// The limits of its jobs.
     pub fn job_limits(&self) -> JobLimits {
-        job_limits::of(|key| self.base.settings.at(key).clone())
+        job_limits::of(|key| self.settings.at(key).clone())
     }
 
     /// The resolved study: units converted, defaults written out, axes as lists. It is a study file
     /// itself: read again, it plans the same jobs in the same order, with the same order of
     /// parameters.
     pub fn resolved(&self) -> Json {
-        let mut json = self.base.to_json();
+        let mut json = self.settings.to_json();
         json["name"] = self.name.as_str().into();
         let mut json = Json::from(json);
         let units = self.units.iter();
@@ -287,23 +294,23 @@ impl Study {
 
     /// The points of the study, in plan order: those of the product that the filter keeps, and the single
     /// points.
-    pub(crate) fn points(&self) -> &[StudyPoint] {
-        &self.points.points
+    pub(crate) fn points(&self) -> &[Point] {
+        &self.points
     }
 
     /// The runs of one searched point, with these values by column of the grid. Empty where the filter
     /// removes it: a search ends there.
-    pub(crate) fn points_at(&self, values: &[Value], searched: Searched) -> Vec<StudyPoint> {
+    pub(crate) fn points_at(&self, values: &[Value], searched: Searched) -> Vec<Point> {
         // A value between two valid ones is valid: what a key allows is an interval.
-        expand::points_at(&self.base, &self.grid, &Source::new(&self.name), values, searched)
+        expand::points_at(&self.settings, &self.grid, &Source::new(&self.name), values, searched)
             .unwrap_or_default()
     }
 
     /// Number of points that differ in more than replicates.
     pub(crate) fn point_count(&self) -> usize {
         let replicates = self.replicates();
-        let key = |point: &StudyPoint| -> Vec<String> {
-            let fixed = point.parameters.iter().filter(|(name, _)| !replicates.contains(name));
+        let key = |point: &Point| -> Vec<String> {
+            let fixed = point.job.parameters.iter().filter(|(name, _)| !replicates.contains(name));
             fixed.map(|(_, value)| value.to_string()).collect()
         };
         self.points().iter().map(key).collect::<BTreeSet<_>>().len()
@@ -311,19 +318,19 @@ impl Study {
 
     /// Number of points of the product that the filter removed.
     pub fn filtered(&self) -> usize {
-        self.points.filtered
+        self.filtered
     }
 }
 
 /// The question of a study.
-fn question(base: &Base) -> String {
-    let question = base.settings.text("question");
+fn question(settings: &Settings) -> String {
+    let question = settings.text("question");
     question.unwrap_or_default().to_owned()
 }
 
 /// The study's name: the given one, or that of its file; always one that a folder can have.
-fn study_name(base: &Base, stem: &str, source: &Source) -> Result<String, InputError> {
-    let given = base.settings.text("name");
+fn study_name(settings: &Settings, stem: &str, source: &Source) -> Result<String, InputError> {
+    let given = settings.text("name");
     let name = given.unwrap_or(stem);
     let valid = !name.is_empty()
         && name.len() <= 100

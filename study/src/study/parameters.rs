@@ -102,8 +102,8 @@ impl Study {
     pub fn key(&self, name: &str) -> Option<StudyKey> {
         let source = Source::new("");
         let column =
-            target::find(name, name, &Json::Null, &self.base, Section::Grid, &source).ok()?;
-        let (key, value) = (column.target.key(), column.target.value(&self.base));
+            target::find(name, name, &Json::Null, &self.settings, Section::Grid, &source).ok()?;
+        let (key, value) = (column.target.key(), column.target.value(&self.settings));
         Some(StudyKey { name: column.name, key, value })
     }
 }

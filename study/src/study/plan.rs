@@ -5,15 +5,12 @@
 
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
-use std::sync::Arc;
 
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
-
+use crate::job::JobId;
 use crate::job::point::Point;
-use crate::job::{Job, JobId};
 use crate::study::finished::FinishedRow;
 use crate::study::search::replay::Replay;
-use crate::study::{Border, Study, StudyPoint};
+use crate::study::{Border, Study};
 
 /// Points that are planned together.
 #[derive(Debug, Clone, PartialEq)]
@@ -121,22 +118,17 @@ pub fn borders(study: &Study, finished: &[FinishedRow]) -> Vec<Border> {
 }
 
 /// A generation of these points. Points with the same job are merged into the first of them.
-pub(super) fn generation(number: u32, planned: &[StudyPoint]) -> Generation {
+pub(super) fn generation(number: u32, planned: &[Point]) -> Generation {
     let mut points: Vec<Point> = Vec::with_capacity(planned.len());
-    let mut positions: HashMap<JobId, usize> = HashMap::new();
-    let ids: Vec<JobId> = planned.par_iter().map(|point| JobId::of(&point.scene)).collect();
-    for (point, id) in planned.iter().zip(ids) {
-        match positions.entry(id) {
-            Entry::Occupied(entry) => points[*entry.get()].merged.push(point.parameters.clone()),
+    let mut positions: HashMap<&JobId, usize> = HashMap::with_capacity(planned.len());
+    for point in planned {
+        match positions.entry(&point.job.id) {
+            Entry::Occupied(entry) => {
+                points[*entry.get()].merged.push(point.job.parameters.clone());
+            }
             Entry::Vacant(entry) => {
-                let job = Job {
-                    id: entry.key().clone(),
-                    parameters: point.parameters.clone(),
-                    scene: Arc::clone(&point.scene),
-                };
                 entry.insert(points.len());
-                let infeasible = point.infeasible.clone();
-                points.push(Point { job, infeasible, solved: point.solved, merged: Vec::new() });
+                points.push(point.clone());
             }
         }
     }

@@ -80,11 +80,11 @@ impl Grid {
 
 /// The seeds 1 to a number. Seed 0 has no imperfection.
 fn seeds(count: i64, path: &str, json: &Json, context: Context<'_>) -> Result<Json, InputError> {
-    let Context { source, size, .. } = context;
-    let fits = usize::try_from(count).is_ok_and(|count| (1..=size.points).contains(&count));
+    let Context { source, max_points, .. } = context;
+    let fits = usize::try_from(count).is_ok_and(|count| (1..=max_points).contains(&count));
     if !fits {
         let problem = "is not a number of seeds";
-        let allowed = format!("1 to {}, or {ALLOWED}", size.points);
+        let allowed = format!("1 to {}, or {ALLOWED}", max_points);
         return Err(source.error(path, &json.brief(), problem, allowed));
     }
     Ok(Json::List((1..=count).map(Json::Integer).collect()))

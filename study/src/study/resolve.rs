@@ -5,13 +5,12 @@ use billow_solver::scene::{
     InflowWindow, IntegratorKind, ModelKind, Outputs, Scene, Solver, Stepping, Thresholds,
 };
 
-use super::base::Base;
 use super::ground;
 use super::schedule::Schedule;
-use super::strategy::{Strategy, Window};
 use crate::input::keys::{self, MODEL_KINDS, RESIDUAL_GAS, ResidualGas};
 use crate::input::settings::{Settings, check_sample_interval};
 use crate::input::source::{Source, shown};
+use crate::input::strategy::{Strategy, Window};
 use crate::platform::error::InputError;
 
 /// The scene of a point: the values of its keys, completed by its strategy and its model.
@@ -19,11 +18,11 @@ use crate::platform::error::InputError;
 /// # Errors
 /// When a key is missing, or two keys contradict each other.
 pub(super) fn scene(
-    point: &Base,
+    point: &Settings,
     design: FoldDesign,
     source: &Source,
 ) -> Result<Scene, InputError> {
-    let settings = &point.settings;
+    let settings = point;
     let film = settings.film(source)?;
     let model = settings.word("solver.model", &MODEL_KINDS, source)?;
     let end_time = settings.needed("solver.end_time", source)?;
@@ -121,8 +120,8 @@ struct Inflow {
 }
 
 impl Inflow {
-    fn of(point: &Base, source: &Source) -> Result<Self, InputError> {
-        let settings = &point.settings;
+    fn of(point: &Settings, source: &Source) -> Result<Self, InputError> {
+        let settings = point;
         Ok(Self {
             temperature: settings.needed("gas.inflow_temperature", source)?,
             residual_mass: settings.needed("gas.residual_gas_mass", source)?,
@@ -161,7 +160,7 @@ fn stepping(
 
 /// What the inflow windows of a point follow from.
 struct Windows<'a> {
-    point: &'a Base,
+    point: &'a Settings,
     /// Name of the strategy.
     name: &'a str,
     strategy: &'a Strategy,
@@ -214,7 +213,7 @@ impl Windows<'_> {
         let from = window.from.unwrap_or(self.strategy.release_time());
         let rate = match window.mass_flow_rate {
             Some(rate) => rate,
-            None => self.point.settings.needed("gas.mass_flow_rate", self.source)?,
+            None => self.point.needed("gas.mass_flow_rate", self.source)?,
         };
         let to = match (window.to, window.mass) {
             (Some(_), Some(mass)) => {
@@ -259,14 +258,14 @@ mod tests {
         "imperfection_amplitude": 1e-4, "seed": 1
     }"#;
 
-    fn base(model: &str) -> Base {
+    fn base(model: &str) -> Settings {
         let text = TEXT.replace("film\"}", &format!("{model}\"}}"));
-        Base::read(&parse(&text, "a").unwrap(), &Source::new("a")).unwrap()
+        Settings::of_study(&parse(&text, "a").unwrap(), &Source::new("a")).unwrap()
     }
 
-    fn scene_of(point: &Base) -> Scene {
+    fn scene_of(point: &Settings) -> Scene {
         let source = Source::new("a");
-        scene(point, point.settings.design(&source).unwrap(), &source).unwrap()
+        scene(point, point.design(&source).unwrap(), &source).unwrap()
     }
 
     #[test]
@@ -280,7 +279,7 @@ mod tests {
             let stepping = key.path.starts_with("solver.stepping.");
             let before = base(if stepping { "piston" } else { "film" });
             let mut after = before.clone();
-            let other = match (key.kind, before.settings.at(index)) {
+            let other = match (key.kind, before.at(index)) {
                 (_, Value::Integer(number)) => Value::Integer(number + 1),
                 (_, Value::Number(number)) => Value::Number(0.9 * number + 1e-3),
                 (KeyKind::Choice(words), given) => {
@@ -293,12 +292,12 @@ mod tests {
             };
             if key.path == "strategy" {
                 after.strategies.insert("direct".to_owned(), Strategy::direct());
-                after.settings.set(
+                after.set(
                     KEYS.iter().position(|key| key.path == "gas.ambient_pressure").unwrap(),
                     Value::Number(0.0),
                 );
             }
-            after.settings.set(index, other);
+            after.set(index, other);
             assert_ne!(scene_of(&before), scene_of(&after), "{}", key.path);
         }
     }

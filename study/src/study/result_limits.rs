@@ -2,14 +2,14 @@
 
 use crate::input::json::Json;
 use crate::input::keys::STUDY;
-use crate::input::settings::object;
+use crate::input::object::object;
 use crate::input::source::Source;
 use crate::input::units::{self, Dimension};
 use crate::input::value::Value;
 use crate::job::result_limit::{Condition, ResultLimit};
 use crate::job::row::{COLUMNS, CellType, ColumnGroup, RowColumn};
 use crate::platform::error::InputError;
-use crate::platform::nearest::nearest;
+use crate::platform::nearest::or_nearest;
 use billow_solver::output::measures::Verdict;
 
 /// Every verdict.
@@ -90,8 +90,7 @@ fn verdict(json: &Json, path: &str, source: &Source) -> Result<Condition, InputE
         return Ok(Condition::Is(Value::Text(word.to_owned())));
     }
     let names = VERDICTS.map(Verdict::name);
-    let near = nearest(word, names.iter().copied());
-    let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
+    let near = or_nearest(word, names.iter().copied());
     Err(source.error(path, &json.brief(), format!("is not a verdict{near}"), names.join(", ")))
 }
 
@@ -101,7 +100,7 @@ fn bound(
     path: &str,
     source: &Source,
 ) -> Result<Condition, InputError> {
-    let dimension = Dimension::ALL.into_iter().find(|known| known.si() == column.unit);
+    let dimension = Dimension::all().find(|known| known.si() == column.unit);
     let allowed = match dimension {
         Some(Dimension::Number) | None => "<, <=, > or >= and a number, as in \"< 0.1\"".to_owned(),
         Some(dimension) => format!(
@@ -137,8 +136,7 @@ fn bound(
 
 fn unknown(name: &str, path: &str, value: &Json, source: &Source) -> InputError {
     let known = COLUMNS.iter().filter(|column| can_be_limited(column)).map(|column| column.name);
-    let near = nearest(name, known);
-    let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
+    let near = or_nearest(name, known);
     let problem = format!("is not a measure that can have a limit{near}");
     let mut error = source.error(
         path,

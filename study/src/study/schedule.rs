@@ -3,11 +3,11 @@
 
 use billow_solver::scene::Scene;
 
-use super::base::Base;
-use super::strategy::Strategy;
 use crate::input::keys::{KEYS, Key, named};
 use crate::input::plausible::{Implausible, MIN_SAMPLES};
+use crate::input::settings::Settings;
 use crate::input::source::{Source, shown};
+use crate::input::strategy::Strategy;
 use crate::input::value::{Value, brief_number};
 
 /// Fraction of the run that a released capsule needs at least, without a warning. Chosen: the verdict is
@@ -19,7 +19,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// What a warning compares: one point of a study.
 pub(super) struct Schedule<'a> {
-    pub point: &'a Base,
+    pub point: &'a Settings,
     pub scene: &'a Scene,
     /// Residual gas let in as a burst, kg, and its rate, kg/s.
     pub burst: (f64, f64),
@@ -65,7 +65,7 @@ impl Schedule<'_> {
             }
             let rate = window
                 .mass_flow_rate
-                .or(self.point.settings.number("gas.mass_flow_rate"))
+                .or(self.point.number("gas.mass_flow_rate"))
                 .filter(|rate| *rate > 0.0);
             let of_mass = window.mass.zip(rate).map(|(mass, rate)| from + mass / rate);
             if let Some(to) = window.to.or(of_mass).filter(|to| *to > end) {

@@ -2,12 +2,13 @@
 
 use std::fmt::Write as _;
 
-use super::base::Base;
 use crate::input::json::Json;
 use crate::input::keys::{self, KEYS, Key, STRATEGY_KEYS, WINDOW_KEYS};
+use crate::input::settings::Settings;
 use crate::input::source::Source;
 use crate::input::value::Value;
 use crate::platform::error::InputError;
+use crate::platform::nearest::or_nearest;
 
 /// A varied key.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,9 +44,9 @@ impl Target {
     }
 
     /// The value at a point.
-    pub fn value(&self, point: &Base) -> Value {
+    pub fn value(&self, point: &Settings) -> Value {
         match self {
-            Self::Key(index) => point.settings.at(*index).clone(),
+            Self::Key(index) => point.at(*index).clone(),
             Self::Strategy(name, index) => point
                 .strategies
                 .get(name)
@@ -59,9 +60,9 @@ impl Target {
     }
 
     /// Sets the value at a point.
-    pub fn set(&self, point: &mut Base, value: Value) {
+    pub fn set(&self, point: &mut Settings, value: Value) {
         match self {
-            Self::Key(index) => point.settings.set(*index, value),
+            Self::Key(index) => point.set(*index, value),
             Self::Strategy(name, index) => {
                 if let Some(strategy) = point.strategies.get_mut(name) {
                     strategy.values[*index] = value;
@@ -111,7 +112,7 @@ pub(super) fn find(
     name: &str,
     path: &str,
     value: &Json,
-    base: &Base,
+    settings: &Settings,
     section: Section,
     source: &Source,
 ) -> Result<Column, InputError> {
@@ -120,7 +121,7 @@ pub(super) fn find(
         return Ok(Column { name: keys::short_name(index).to_owned(), target });
     }
     if let Some(rest) = name.strip_prefix("strategies.") {
-        return of_strategy(name, rest, path, value, base, source);
+        return of_strategy(name, rest, path, value, settings, source);
     }
     Err(unknown(name, path, value, section, source))
 }
@@ -131,14 +132,14 @@ fn of_strategy(
     rest: &str,
     path: &str,
     value: &Json,
-    base: &Base,
+    settings: &Settings,
     source: &Source,
 ) -> Result<Column, InputError> {
     let allowed =
         "strategies.<name>.release_time, .preinflation_mass, .inflow[0].mass_flow_rate, …";
     let parts: Vec<&str> = rest.split('.').collect();
-    let Some(strategy) = parts.first().and_then(|part| base.strategies.get(*part)) else {
-        base.check_strategy(parts.first().unwrap_or(&""), path, source)?;
+    let Some(strategy) = parts.first().and_then(|part| settings.strategies.get(*part)) else {
+        settings.check_strategy(parts.first().unwrap_or(&""), path, source)?;
         return Err(source.error(path, &value.brief(), "is not a key of a strategy", allowed));
     };
     let position = |keys: &[Key], leaf: &str| keys.iter().position(|key| key.path == leaf);
@@ -174,8 +175,7 @@ fn unknown(name: &str, path: &str, value: &Json, section: Section, source: &Sour
     }
     let varied = KEYS.iter().enumerate().filter(|(_, key)| key.varies());
     let known = varied.flat_map(|(index, key)| [keys::short_name(index), key.path]);
-    let near = keys::nearest(name, known.chain(section.words().iter().copied()));
-    let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
+    let near = or_nearest(name, known.chain(section.words().iter().copied()));
     let problem = format!("is not a key that {}{near}", section.use_of_keys());
     let mut allowed = "keys of the study, as N or film.thickness".to_owned();
     if !section.words().is_empty() {

@@ -2,16 +2,17 @@
 //! file writes for a key, first under `grid`, then in its section; for a measure those of its limit.
 
 use super::accuracy::ACCURACY;
-use super::base::Base;
 use super::target::{self, Section};
 use super::{JOB_LIMITS, LIMITS, REPLICATES, UNITS};
 use crate::input::json::Json;
 use crate::input::keys::{self, KEYS, KeyKind, STUDY};
-use crate::input::settings::object;
+use crate::input::object::object;
+use crate::input::settings::Settings;
 use crate::input::source::Source;
 use crate::input::units::{DisplayUnit, DisplayUnits, written_unit};
 use crate::job::row::COLUMNS;
 use crate::platform::error::InputError;
+use crate::platform::nearest::or_nearest;
 
 /// Members of a range and of a search that hold values of the key.
 const VALUE_MEMBERS: [&str; 4] = ["from", "to", "step", "bisect"];
@@ -25,7 +26,11 @@ const ALLOWED: &str =
 ///
 /// # Errors
 /// A name in `units` that is neither a key nor a column, or a unit of another dimension.
-pub(super) fn read(tree: &Json, base: &Base, source: &Source) -> Result<DisplayUnits, InputError> {
+pub(super) fn read(
+    tree: &Json,
+    settings: &Settings,
+    source: &Source,
+) -> Result<DisplayUnits, InputError> {
     let mut units = DisplayUnits::si();
     if let Some(section) = tree.get("units") {
         for (name, value) in object(section, &STUDY, "units", source)? {
@@ -34,7 +39,7 @@ pub(super) fn read(tree: &Json, base: &Base, source: &Source) -> Result<DisplayU
                 let problem = format!("is {}, not a unit", value.kind());
                 return Err(source.error(&path, &value.brief(), problem, ALLOWED));
             };
-            let (name, si) = quantity(name, &path, value, base, source)?;
+            let (name, si) = quantity(name, &path, value, settings, source)?;
             DisplayUnit::new(symbol, si)
                 .map_err(|problem| source.error(&path, &value.brief(), problem, ALLOWED))?;
             units.set(&name, symbol);
@@ -42,7 +47,8 @@ pub(super) fn read(tree: &Json, base: &Base, source: &Source) -> Result<DisplayU
     }
     for section in ["grid", REPLICATES] {
         written_in_grid(tree.get(section), &mut |name, value| {
-            if let Ok(column) = target::find(name, section, value, base, Section::Grid, source) {
+            if let Ok(column) = target::find(name, section, value, settings, Section::Grid, source)
+            {
                 suggest(&mut units, &column.name, value);
             }
         });
@@ -64,10 +70,10 @@ pub(super) fn quantity(
     name: &str,
     path: &str,
     value: &Json,
-    base: &Base,
+    settings: &Settings,
     source: &Source,
 ) -> Result<(String, &'static str), InputError> {
-    if let Ok(column) = target::find(name, path, value, base, Section::Grid, source) {
+    if let Ok(column) = target::find(name, path, value, settings, Section::Grid, source) {
         return Ok((column.name, column.target.key().unit()));
     }
     let current = name;
@@ -76,8 +82,7 @@ pub(super) fn quantity(
     }
     let known = KEYS.iter().enumerate().filter(|(_, key)| key.varies());
     let known = known.map(|(index, _)| keys::short_name(index));
-    let near = keys::nearest(name, known.chain(COLUMNS.iter().map(|column| column.name)));
-    let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
+    let near = or_nearest(name, known.chain(COLUMNS.iter().map(|column| column.name)));
     let problem = format!("is neither a key of the study nor a column of its table{near}");
     Err(source.error(path, &value.brief(), problem, "keys, as mass_flow_rate; columns, as peak_vz"))
 }

@@ -159,7 +159,7 @@ pub fn print_next(answer: &Answer, root: &Path, out: &mut dyn Write) -> io::Resu
 fn exact(effect: &Effect, si: f64) -> String {
     let unit = &effect.shown;
     let text = format!("{} {}", unit.number(si), unit.symbol());
-    let dimension = Dimension::ALL.into_iter().find(|known| known.si() == effect.unit);
+    let dimension = Dimension::all().find(|known| known.si() == effect.unit);
     let read = dimension.and_then(|dimension| units::parse(&text, dimension).ok());
     if read == Some(si) && unit.symbol() != effect.unit { text } else { si.to_string() }
 }

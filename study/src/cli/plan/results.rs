@@ -54,7 +54,7 @@ fn limits(study: &Study) -> Vec<String> {
                 .to_owned(),
         );
     }
-    let without_film = study.points().iter().map(|point| point.scene.solver.model);
+    let without_film = study.points().iter().map(|point| point.job.scene.solver.model);
     let without_film: Vec<ModelKind> =
         without_film.filter(|model| *model != ModelKind::Film).collect();
     let names: Vec<&str> = MODELS

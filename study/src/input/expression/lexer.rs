@@ -1,7 +1,8 @@
 //! Tokens of an expression.
 
-use super::tree::{ExpressionError, Operator, Span, error_at};
-use crate::input::units::is_unit;
+use super::ExpressionError;
+use super::node::Operator;
+use crate::input::units::{is_unit, number_length};
 
 /// A token.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,7 +18,7 @@ pub(super) enum Token {
 }
 
 /// Splits an expression into tokens; the last is [`Token::End`].
-pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Span)>, ExpressionError> {
+pub(super) fn tokens(text: &str) -> Result<Vec<(Token, (usize, usize))>, ExpressionError> {
     let mut tokens = Vec::new();
     let mut position = 0;
     while let Some(first) = text[position..].chars().next() {
@@ -43,7 +44,7 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Span)>, ExpressionError> 
                     ('>', true) => Operator::GreaterEqual,
                     ('>', false) => Operator::Greater,
                     _ => {
-                        return Err(error_at(
+                        return Err(ExpressionError::new(
                             text,
                             (start, position),
                             "`!` alone",
@@ -55,7 +56,7 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Span)>, ExpressionError> 
             }
             '\'' | '"' => {
                 let Some(length) = text[position..].find(first) else {
-                    return Err(error_at(
+                    return Err(ExpressionError::new(
                         text,
                         (start, text.len()),
                         "a text without its closing quote",
@@ -67,9 +68,8 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Span)>, ExpressionError> 
                 Token::Text(quoted)
             }
             '0'..='9' | '.' => {
-                position = start + number_length(&text[start..]);
-                let number = text[start..position.max(start + 1)].parse::<f64>();
-                position = position.max(start + 1);
+                position = start + number_length(&text[start..]).unwrap_or(1);
+                let number = text[start..position].parse::<f64>();
                 match (number, after_number(&text[position..])) {
                     (Ok(number), "") if number.is_finite() => Token::Number(number),
                     // A percentage is a pure number: it must not be compared with a length.
@@ -80,15 +80,15 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Span)>, ExpressionError> 
                     }
                     (Ok(_), unit) if !unit.is_empty() => {
                         let end = position + text[position..].find(unit).unwrap_or(0) + unit.len();
-                        return Err(error_at(
+                        return Err(ExpressionError::new(
                             text,
                             (start, end),
                             "a number with a unit is written in quotes",
-                            &format!("'{} {unit}', or a number in SI", &text[start..position]),
+                            format!("'{} {unit}', or a number in SI", &text[start..position]),
                         ));
                     }
                     _ => {
-                        return Err(error_at(
+                        return Err(ExpressionError::new(
                             text,
                             (start, position),
                             "not a number",
@@ -101,7 +101,12 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Span)>, ExpressionError> 
                 let rest = text[start..]
                     .find(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.' | '[' | ']')));
                 position = rest.map_or(text.len(), |length| start + length);
-                word(&text[start..position])
+                match &text[start..position] {
+                    "and" => Token::Operator(Operator::And),
+                    "or" => Token::Operator(Operator::Or),
+                    "not" => Token::Not,
+                    name => Token::Name(name.to_owned()),
+                }
             }
             _ => {
                 let allowed = "and, or, not, == != < <= > >=, + - * /, ( ), numbers, quoted text, \
@@ -111,22 +116,13 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Span)>, ExpressionError> 
                     '|' => "`|` is written `or`".to_owned(),
                     other => format!("`{}` does not belong in an expression", other.escape_debug()),
                 };
-                return Err(error_at(text, (start, position), problem, allowed));
+                return Err(ExpressionError::new(text, (start, position), problem, allowed));
             }
         };
         tokens.push((token, (start, position)));
     }
     tokens.push((Token::End, (text.len(), text.len())));
     Ok(tokens)
-}
-
-fn word(word: &str) -> Token {
-    match word {
-        "and" => Token::Operator(Operator::And),
-        "or" => Token::Operator(Operator::Or),
-        "not" => Token::Not,
-        _ => Token::Name(word.to_owned()),
-    }
 }
 
 /// What follows a number: `%`, a unit, or nothing that belongs to it.
@@ -142,27 +138,4 @@ fn after_number(rest: &str) -> &str {
     let unit = &rest[..rest.find(|c| !in_unit(c)).unwrap_or(rest.len())];
     let unit = unit.trim_end_matches('/');
     if is_unit(unit) { unit } else { "" }
-}
-
-/// Length of the number position the start of a text, bytes.
-fn number_length(text: &str) -> usize {
-    let bytes = text.as_bytes();
-    let digits = |mut position: usize| {
-        while bytes.get(position).is_some_and(u8::is_ascii_digit) {
-            position += 1;
-        }
-        position
-    };
-    let mut position = digits(0);
-    if bytes.get(position) == Some(&b'.') {
-        position = digits(position + 1);
-    }
-    if matches!(bytes.get(position), Some(b'e' | b'E')) {
-        let sign = usize::from(matches!(bytes.get(position + 1), Some(b'+' | b'-')));
-        let exponent = digits(position + 1 + sign);
-        if exponent > position + 1 + sign {
-            position = exponent;
-        }
-    }
-    position
 }

@@ -7,8 +7,8 @@ use super::objects::{
     BODY_KEYS, GRAVITY, MESH_KEYS, MOVE_KEYS, OBJECT_MEANINGS, OUTPUT_KEYS, PLATE_KEYS,
     ROTATION_KEYS, SCENE_WINDOW_KEYS, SPIN_KEYS, START_KEYS, SUPPORT_KEYS,
 };
-use super::strategy::{CAPSULE_SUPPORT_KEYS, STRATEGY_KEYS, WINDOW_KEYS};
 use super::study::GRID_MEANINGS;
+use super::study_objects::{CAPSULE_SUPPORT_KEYS, STRATEGY_KEYS, WINDOW_KEYS};
 use super::table::{SCENE, STUDY, Table};
 use crate::input::value::short_number;
 

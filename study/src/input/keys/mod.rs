@@ -8,8 +8,8 @@ pub mod numerical;
 mod objects;
 mod quantity;
 mod scene;
-mod strategy;
 mod study;
+mod study_objects;
 mod table;
 mod words;
 
@@ -22,9 +22,11 @@ pub use objects::{
 pub(crate) use objects::{FLAT, GRAVITY, NEAR, object_meaning};
 pub use quantity::Quantity;
 pub(crate) use quantity::whole;
-pub use strategy::{CAPSULE_SUPPORT_KEYS, STRATEGY_KEYS, WINDOW_KEYS};
 pub(crate) use study::GRID_MEANINGS;
 pub use study::{KEYS, SECTIONS};
+pub use study_objects::{
+    CAPSULE_SUPPORT_KEYS, RANGE_KEYS, SEARCH_KEYS, STRATEGY_KEYS, WINDOW_KEYS,
+};
 pub use table::{SCENE, STUDY, Table, find, index, short_name};
 pub(crate) use words::{
     CAPS, CHIRALITIES, FITS, INTEGRATORS, ISOTHERMAL, MODEL_KINDS, Named, PROFILES, RESIDUAL_GAS,

@@ -51,107 +51,54 @@ pub enum Dimension {
     Memory,
 }
 
+/// Dimension, name with its article, powers of the base units, usual units with the SI unit first. Any other
+/// unit of the dimension is read as well.
+type Row = (Dimension, &'static str, Powers, &'static [&'static str]);
+
+/// One row for each dimension, in their order.
+#[rustfmt::skip]
+const ROWS: [Row; 20] = [
+    (Dimension::Number, "a pure number", [0, 0, 0, 0, 0, 0], &["%"]),
+    (Dimension::Length, "a length", [1, 0, 0, 0, 0, 0], &["m", "cm", "mm", "um", "in"]),
+    (Dimension::Area, "an area", [2, 0, 0, 0, 0, 0], &["m2", "cm2", "mm2"]),
+    (Dimension::Volume, "a volume", [3, 0, 0, 0, 0, 0], &["m3", "cm3", "l"]),
+    (Dimension::Mass, "a mass", [0, 1, 0, 0, 0, 0], &["kg", "g", "mg"]),
+    (Dimension::Time, "a time", [0, 0, 1, 0, 0, 0], &["s", "ms", "us", "min", "h"]),
+    (Dimension::Temperature, "a temperature", [0, 0, 0, 1, 0, 0], &["K", "degC"]),
+    (Dimension::Angle, "an angle", [0, 0, 0, 0, 1, 0], &["rad", "deg"]),
+    (Dimension::Pressure, "a pressure", [-1, 1, -2, 0, 0, 0], &["Pa", "kPa", "MPa", "GPa", "mbar", "bar", "atm"]),
+    (Dimension::Density, "a density", [-3, 1, 0, 0, 0, 0], &["kg/m3", "g/cm3"]),
+    (Dimension::MassFlowRate, "a mass flow rate", [0, 1, -1, 0, 0, 0], &["kg/s", "g/s", "mg/s", "kg/h"]),
+    (Dimension::Velocity, "a velocity", [1, 0, -1, 0, 0, 0], &["m/s", "mm/s", "km/h"]),
+    (Dimension::Acceleration, "an acceleration", [1, 0, -2, 0, 0, 0], &["m/s2", "mm/s2"]),
+    (Dimension::Energy, "an energy", [2, 1, -2, 0, 0, 0], &["J", "mJ", "kJ"]),
+    (Dimension::Frequency, "a frequency", [0, 0, -1, 0, 0, 0], &["Hz", "kHz", "1/s"]),
+    (Dimension::AngularVelocity, "an angular velocity", [0, 0, -1, 0, 1, 0], &["rad/s", "deg/s"]),
+    (Dimension::Force, "a force", [1, 1, -2, 0, 0, 0], &["N", "mN", "kN"]),
+    (Dimension::SpecificHeat, "a specific heat", [2, 0, -2, -1, 0, 0], &["J/(kg K)", "kJ/(kg K)"]),
+    (Dimension::HeatTransfer, "a heat transfer coefficient", [0, 1, -3, -1, 0, 0], &["W/(m2 K)", "mW/(cm2 K)"]),
+    (Dimension::Memory, "a size of memory", [0, 0, 0, 0, 0, 1], &["B", "kB", "MB", "GB", "KiB", "MiB", "GiB"]),
+];
+
 impl Dimension {
     /// Every dimension.
-    pub const ALL: [Self; 20] = [
-        Self::Number,
-        Self::Length,
-        Self::Area,
-        Self::Volume,
-        Self::Mass,
-        Self::Time,
-        Self::Temperature,
-        Self::Angle,
-        Self::Pressure,
-        Self::Density,
-        Self::MassFlowRate,
-        Self::Velocity,
-        Self::Acceleration,
-        Self::Energy,
-        Self::Frequency,
-        Self::AngularVelocity,
-        Self::Force,
-        Self::SpecificHeat,
-        Self::HeatTransfer,
-        Self::Memory,
-    ];
+    pub fn all() -> impl Iterator<Item = Self> {
+        ROWS.iter().map(|row| row.0)
+    }
 
     /// Powers of the base units.
     pub fn powers(self) -> Powers {
-        match self {
-            Self::Number => [0, 0, 0, 0, 0, 0],
-            Self::Length => [1, 0, 0, 0, 0, 0],
-            Self::Area => [2, 0, 0, 0, 0, 0],
-            Self::Volume => [3, 0, 0, 0, 0, 0],
-            Self::Mass => [0, 1, 0, 0, 0, 0],
-            Self::Time => [0, 0, 1, 0, 0, 0],
-            Self::Temperature => [0, 0, 0, 1, 0, 0],
-            Self::Angle => [0, 0, 0, 0, 1, 0],
-            Self::Pressure => [-1, 1, -2, 0, 0, 0],
-            Self::Density => [-3, 1, 0, 0, 0, 0],
-            Self::MassFlowRate => [0, 1, -1, 0, 0, 0],
-            Self::Velocity => [1, 0, -1, 0, 0, 0],
-            Self::Acceleration => [1, 0, -2, 0, 0, 0],
-            Self::Energy => [2, 1, -2, 0, 0, 0],
-            Self::Frequency => [0, 0, -1, 0, 0, 0],
-            Self::AngularVelocity => [0, 0, -1, 0, 1, 0],
-            Self::Force => [1, 1, -2, 0, 0, 0],
-            Self::SpecificHeat => [2, 0, -2, -1, 0, 0],
-            Self::HeatTransfer => [0, 1, -3, -1, 0, 0],
-            Self::Memory => [0, 0, 0, 0, 0, 1],
-        }
+        ROWS[self as usize].2
     }
 
     /// Name with its article, for errors.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Number => "a pure number",
-            Self::Length => "a length",
-            Self::Area => "an area",
-            Self::Volume => "a volume",
-            Self::Mass => "a mass",
-            Self::Time => "a time",
-            Self::Temperature => "a temperature",
-            Self::Angle => "an angle",
-            Self::Pressure => "a pressure",
-            Self::Density => "a density",
-            Self::MassFlowRate => "a mass flow rate",
-            Self::Velocity => "a velocity",
-            Self::Acceleration => "an acceleration",
-            Self::Energy => "an energy",
-            Self::Frequency => "a frequency",
-            Self::AngularVelocity => "an angular velocity",
-            Self::Force => "a force",
-            Self::SpecificHeat => "a specific heat",
-            Self::HeatTransfer => "a heat transfer coefficient",
-            Self::Memory => "a size of memory",
-        }
+        ROWS[self as usize].1
     }
 
-    /// Usual units, the SI unit first; any other unit of the dimension is read as well.
+    /// Usual units, the SI unit first.
     pub fn units(self) -> &'static [&'static str] {
-        match self {
-            Self::Number => &["%"],
-            Self::Length => &["m", "cm", "mm", "um", "in"],
-            Self::Area => &["m2", "cm2", "mm2"],
-            Self::Volume => &["m3", "cm3", "l"],
-            Self::Mass => &["kg", "g", "mg"],
-            Self::Time => &["s", "ms", "us", "min", "h"],
-            Self::Temperature => &["K", "degC"],
-            Self::Angle => &["rad", "deg"],
-            Self::Pressure => &["Pa", "kPa", "MPa", "GPa", "mbar", "bar", "atm"],
-            Self::Density => &["kg/m3", "g/cm3"],
-            Self::MassFlowRate => &["kg/s", "g/s", "mg/s", "kg/h"],
-            Self::Velocity => &["m/s", "mm/s", "km/h"],
-            Self::Acceleration => &["m/s2", "mm/s2"],
-            Self::Energy => &["J", "mJ", "kJ"],
-            Self::Frequency => &["Hz", "kHz", "1/s"],
-            Self::AngularVelocity => &["rad/s", "deg/s"],
-            Self::Force => &["N", "mN", "kN"],
-            Self::SpecificHeat => &["J/(kg K)", "kJ/(kg K)"],
-            Self::HeatTransfer => &["W/(m2 K)", "mW/(cm2 K)"],
-            Self::Memory => &["B", "kB", "MB", "GB", "KiB", "MiB", "GiB"],
-        }
+        ROWS[self as usize].3
     }
 
     /// The SI unit; "1" for a pure number.
@@ -162,7 +109,7 @@ impl Dimension {
 
 /// Powers in words: the name of the dimension, or the base units where it has no name.
 pub fn describe(powers: Powers) -> String {
-    if let Some(dimension) = Dimension::ALL.into_iter().find(|known| known.powers() == powers) {
+    if let Some(dimension) = Dimension::all().find(|known| known.powers() == powers) {
         return dimension.name().to_owned();
     }
     let power = |name: &str, power: i8| match power {

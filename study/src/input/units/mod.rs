@@ -96,33 +96,31 @@ fn finite(value: Option<f64>, text: &str) -> Result<f64, String> {
 
 /// Splits "5 g/s" into number and unit; `None` when it does not start with a number.
 fn split(text: &str) -> Option<(&str, &str)> {
+    let (number, unit) = text.split_at(number_length(text)?);
+    Some((number, unit.trim()))
+}
+
+/// Length of the number at the start of a text, bytes; `None` when it does not start with one.
+pub(crate) fn number_length(text: &str) -> Option<usize> {
     let bytes = text.as_bytes();
-    let mut end = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
-    let digits = |mut end: usize| {
-        while bytes.get(end).is_some_and(u8::is_ascii_digit) {
-            end += 1;
-        }
-        end
-    };
-    let whole = digits(end);
-    let mut count = whole - end;
-    end = whole;
+    let digits =
+        |start: usize| bytes.iter().skip(start).take_while(|byte| byte.is_ascii_digit()).count();
+    let sign = |at: usize| usize::from(matches!(bytes.get(at), Some(b'+' | b'-')));
+    let whole = digits(sign(0));
+    let mut end = sign(0) + whole;
+    let mut count = whole;
     if bytes.get(end) == Some(&b'.') {
-        let fraction = digits(end + 1);
-        count += fraction - end - 1;
-        end = fraction;
+        count += digits(end + 1);
+        end += 1 + digits(end + 1);
     }
     if count == 0 {
         return None;
     }
     if matches!(bytes.get(end), Some(b'e' | b'E')) {
-        let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
-        let exponent = digits(end + 1 + sign);
-        if exponent > end + 1 + sign {
-            end = exponent;
-        }
+        let start = end + 1 + sign(end + 1);
+        end = if digits(start) > 0 { start + digits(start) } else { end };
     }
-    Some((&text[..end], text[end..].trim()))
+    Some(end)
 }
 
 #[cfg(test)]

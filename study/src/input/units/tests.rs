@@ -94,7 +94,7 @@ fn texts_that_are_not_quantities_are_refused() {
 
 #[test]
 fn every_usual_unit_is_read() {
-    for dimension in Dimension::ALL {
+    for dimension in Dimension::all() {
         for unit in dimension.units() {
             assert!(si(&format!("1 {unit}"), dimension) > 0.0, "{unit}");
         }
@@ -120,7 +120,7 @@ proptest! {
     /// A number printed with its unit and read again is the same number.
     #[test]
     fn units_round_trip(value in 1e-6_f64..1e6) {
-        for dimension in Dimension::ALL.into_iter().filter(|d| *d != Dimension::Number) {
+        for dimension in Dimension::all().filter(|d| *d != Dimension::Number) {
             let text = format!("{value} {}", dimension.si());
             prop_assert_eq!(si(&text, dimension).to_bits(), value.to_bits());
         }
@@ -131,7 +131,7 @@ proptest! {
         text in "\\PC{0,40}",
         number in "[-+0-9.eE]{0,12}",
     ) {
-        for dimension in Dimension::ALL {
+        for dimension in Dimension::all() {
             for text in [text.clone(), format!("{number} {text}")] {
                 match parse(&text, dimension) {
                     Ok(value) => prop_assert!(value.is_finite(), "{text:?}: {value}"),

@@ -14,8 +14,8 @@ use std::sync::LazyLock;
 
 use billow_solver::output::measures::Verdict;
 
-use super::cell::Cell;
 use super::job_end::{JobEnd, integer};
+use crate::input::value::Value;
 use crate::platform::provenance;
 
 /// Name, type, unit, meaning and source of a column.
@@ -39,7 +39,7 @@ pub struct RowColumn {
     /// Meaning, one line.
     pub meaning: &'static str,
     /// Takes the cell from a job that ended.
-    pub take: fn(&JobEnd<'_>) -> Cell,
+    pub take: fn(&JobEnd<'_>) -> Value,
 }
 
 /// Type of the cells of a column.
@@ -142,7 +142,7 @@ macro_rules! columns {
             better: BetterSide::$better,
             signed: is_signed!($($signed)?),
             meaning: $meaning,
-            take: |$end| Cell::from($value),
+            take: |$end| Value::from($value),
         }),+];
     };
 }

@@ -7,14 +7,12 @@ use crate::job::executor::Outcome;
 use crate::job::point::Infeasible;
 use crate::job::{Job, Status};
 
-mod cell;
 mod columns;
 mod counts;
 mod derived;
 mod job_end;
 mod noisy;
 
-pub use cell::Cell;
 pub use columns::{BetterSide, COLUMNS, CellType, ColumnGroup, ColumnId, RowColumn};
 pub use counts::Counts;
 pub use derived::{DERIVED_COLUMNS, DerivedColumn, DerivedRow};
@@ -46,7 +44,7 @@ impl Cells {
     /// `content_hash` is the hash of history and frames of a job that ran.
     pub fn of(job: &Job, outcome: &Outcome, content_hash: Option<&str>) -> Option<Self> {
         let end = JobEnd::new(job, outcome, content_hash)?;
-        let values = COLUMNS.iter().map(|column| (column.take)(&end).into()).collect();
+        let values = COLUMNS.iter().map(|column| (column.take)(&end)).collect();
         Some(Self { status: end.status, values })
     }
 
@@ -91,9 +89,9 @@ impl Cells {
     }
 
     /// Sets a cell. The status is set by [`Self::new`] alone.
-    pub fn set(&mut self, column: ColumnId, value: impl Into<Cell>) {
+    pub fn set(&mut self, column: ColumnId, value: impl Into<Value>) {
         debug_assert_ne!(column, ColumnId::Status, "Cells::new sets the status");
-        self.values[column.index()] = value.into().into();
+        self.values[column.index()] = value.into();
     }
 
     /// How the job ended.

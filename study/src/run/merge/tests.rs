@@ -15,7 +15,7 @@ use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run, Summary};
 use crate::run::selection::{Part, Selection};
 use crate::study::finished::FinishedRow;
 use crate::study::plan;
-use crate::study::{PlanSize, Study};
+use crate::study::{MAX_POINTS, Study};
 
 /// A study of eight piston jobs.
 fn study() -> Study {
@@ -26,7 +26,7 @@ fn study() -> Study {
         "solver": {"model": "piston", "end_time": 0.01},
         "grid": {"mass_flow_rate": [0.001, 0.002, 0.003, 0.004], "N": [5, 6]}
     }"#;
-    Study::from_text(text, "s.json", "s", &[], PlanSize::default()).unwrap()
+    Study::from_text(text, "s.json", "s", &[], MAX_POINTS).unwrap()
 }
 
 /// Runs a part of it with invented results.

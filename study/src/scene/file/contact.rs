@@ -6,11 +6,11 @@ use billow_solver::scene::error::SceneError;
 use billow_solver::scene::film_scene::{FilmContact, FilmScene};
 use billow_solver::scene::plate::Plate;
 
-use super::object::Object;
 use super::{is_static, motion};
 use crate::input::json::Json;
 use crate::input::keys::{PLATE_KEYS, named};
-use crate::input::settings::{Settings, list};
+use crate::input::object::{Object, list};
+use crate::input::settings::Settings;
 use crate::input::source::Source;
 use crate::platform::error::InputError;
 

@@ -10,12 +10,13 @@ use billow_solver::scene::{GasSupply, HeatTransfer, InflowWindow};
 use nalgebra::Vector3;
 
 use super::is_static;
-use super::object::Object;
 use super::shape::Shape;
 use crate::input::json::Json;
 use crate::input::keys::{SCENE_WINDOW_KEYS, named};
+use crate::input::object::Object;
+use crate::input::object::list;
 use crate::input::plausible::Implausible;
-use crate::input::settings::{Settings, list};
+use crate::input::settings::Settings;
 use crate::input::source::{Source, shown};
 use crate::platform::error::InputError;
 

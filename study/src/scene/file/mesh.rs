@@ -9,13 +9,13 @@ use billow_solver::mechanics::supports::Supports;
 use billow_solver::scene::film_scene::FilmScene;
 use nalgebra::Vector3;
 
-use super::object::Object;
 use super::reader::Reader;
 use super::reference::{flattened, reference};
 use super::shape::{Numbering, Shape};
 use super::weld;
 use crate::input::json::Json;
 use crate::input::keys::{MESH_KEYS, named};
+use crate::input::object::Object;
 use crate::input::source::Source;
 use crate::platform::error::{Error, InputError, Result};
 

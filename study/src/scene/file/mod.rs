@@ -12,7 +12,6 @@ mod filling;
 mod memory;
 mod mesh;
 mod motion;
-mod object;
 mod outputs;
 mod reader;
 mod reference;

@@ -2,9 +2,9 @@
 
 use billow_solver::scene::motion::{Motion, Profile, Rotation};
 
-use super::object::Object;
 use crate::input::json::Json;
 use crate::input::keys::{MOVE_KEYS, PROFILES, ROTATION_KEYS, named};
+use crate::input::object::Object;
 use crate::input::settings::Settings;
 use crate::input::source::{Source, shown};
 use crate::platform::error::InputError;

@@ -6,11 +6,11 @@ use billow_solver::output::history::Track;
 use billow_solver::scene::film_scene::FilmOutputs;
 use nalgebra::Vector3;
 
-use super::object::Object;
 use super::selection::{triangle, vertex};
 use super::shape::Shape;
 use crate::input::json::Json;
 use crate::input::keys::{NEAR, OUTPUT_KEYS, named};
+use crate::input::object::Object;
 use crate::input::plausible::{Implausible, MIN_SAMPLES};
 use crate::input::source::{Source, shown};
 use crate::platform::error::InputError;

@@ -4,10 +4,10 @@ use billow_solver::geometry::mesh_io::obj_reader::{self, Face, Surface};
 use billow_solver::geometry::shell::flat;
 use nalgebra::{Vector2, Vector3};
 
-use super::object::Object;
 use super::reader::Reader;
 use crate::input::json::Json;
 use crate::input::keys::{FLAT, KeyKind};
+use crate::input::object::Object;
 use crate::platform::error::{Error, Result};
 
 /// Stress-free corners of each triangle of each face, m.

@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 
 use nalgebra::Vector3;
 
-use super::object::Object;
 use super::shape::Shape;
 use crate::input::json::Json;
 use crate::input::keys::{SUPPORT_KEYS, named, whole};
+use crate::input::object::Object;
 use crate::platform::error::InputError;
 
 /// A plane that selects the nodes near it.

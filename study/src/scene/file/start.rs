@@ -3,11 +3,11 @@
 use billow_solver::geometry::mesh_io::obj_reader;
 use nalgebra::Vector3;
 
-use super::object::Object;
 use super::reader::Reader;
 use super::shape::Shape;
 use crate::input::json::Json;
 use crate::input::keys::{SPIN_KEYS, START_KEYS, named};
+use crate::input::object::Object;
 use crate::input::source::Source;
 use crate::platform::error::Result;
 

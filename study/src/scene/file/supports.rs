@@ -6,14 +6,13 @@ use billow_solver::scene::motion::{Motion, Profile};
 use nalgebra::Vector3;
 
 use super::motion;
-use super::object::Object;
 use super::selection::{self, Plane};
 use super::shape::Shape;
 use crate::input::json::Json;
 use crate::input::keys::{BODY_KEYS, SUPPORT_KEYS, named};
-use crate::input::settings::{Settings, list};
+use crate::input::object::{Object, list};
+use crate::input::settings::Settings;
 use crate::input::source::Source;
-use crate::input::supports::are_components;
 use crate::platform::error::InputError;
 
 /// Time in which the bottom ring of an erected capsule moves to its stowed position, s (chosen: short
@@ -136,7 +135,7 @@ fn hold(
             }))
         }
         (Some(Plane { normal, .. }), None) if !fix => Ok(Hold::Plane(normal)),
-        _ => components(object).map(Hold::Components),
+        _ => object.displacements(const { named(SUPPORT_KEYS, "fix") }).map(Hold::Components),
     }
 }
 
@@ -154,14 +153,4 @@ fn refuse_keys_of_others(object: &Object<'_>, on: &str) -> Result<(), InputError
         }
     }
     Ok(())
-}
-
-/// Components named by letters of "xyz", in any order.
-fn components(object: &Object<'_>) -> Result<[bool; 3], InputError> {
-    let fix = object.needed_text(const { named(SUPPORT_KEYS, "fix") })?;
-    if are_components(&fix) {
-        return Ok(['x', 'y', 'z'].map(|axis| fix.contains(axis)));
-    }
-    let problem = "does not name displacement components";
-    Err(object.error("fix", problem, "letters of \"xyz\", each once"))
 }

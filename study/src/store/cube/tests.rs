@@ -16,7 +16,7 @@ use crate::store::history_file;
 use crate::store::journal::{Journal, Record};
 use crate::store::results::Results;
 use crate::store::stored::planned;
-use crate::study::{PlanSize, Study};
+use crate::study::{MAX_POINTS, Study};
 
 /// Results of a study whose jobs `run` computes; `None` for a job that has not run.
 struct Folder {
@@ -30,7 +30,7 @@ fn ran(varied: &str, run: &dyn Fn(usize) -> Option<Deployment>) -> Folder {
             "gas": {{"mass_flow_rate": "2 g/s"}},
             "solver": {{"model": "piston", "end_time": "6 ms"}}, {varied}}}"#
     );
-    let study = Study::from_text(&text, "cube.json", "cube", &[], PlanSize::default()).unwrap();
+    let study = Study::from_text(&text, "cube.json", "cube", &[], MAX_POINTS).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let results = Results::new(&Disk, folder.path());
     let mut journal = Journal::default();

@@ -70,7 +70,7 @@ fn variable_type(table: &Table, column: &Column) -> Type {
         }
         CellType::Text => Type::Text(None),
         CellType::Integer | CellType::Number => {
-            let known = Dimension::ALL.into_iter().find(|known| known.si() == column.unit);
+            let known = Dimension::all().find(|known| known.si() == column.unit);
             Type::Quantity(known.unwrap_or(Dimension::Number), &[])
         }
     }

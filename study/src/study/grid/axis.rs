@@ -3,13 +3,13 @@
 use super::{Axis, AxisKind, Context, Grid};
 use crate::input::json::Json;
 use crate::input::keys::{KEYS, position};
-use crate::input::settings::read;
+use crate::input::object::read;
 use crate::input::source::Source;
 use crate::input::value::Value;
 use crate::job::proportion::Proportion;
 use crate::platform::error::InputError;
-use crate::study::range::RangeInput;
-use crate::study::search::{SearchFile, is_search};
+use crate::study::range;
+use crate::study::search::{Search, is_search};
 use crate::study::target::{self, Section, Target};
 
 /// What an axis must look like, for errors.
@@ -83,13 +83,13 @@ impl Grid {
         path: &str,
         context: Context<'_>,
     ) -> Result<(), InputError> {
-        let key = self.columns[column].target.key();
-        let file = SearchFile { key, json, path, source: context.source };
+        let Context { source, limits, .. } = context;
         if self.search.is_some() {
-            return file
-                .refuse("is a second search", "one search in a study; the other axes as lists");
+            let allowed = "one search in a study; the other axes as lists";
+            return Err(source.error(path, &json.brief(), "is a second search", allowed));
         }
-        let search = file.read(column, context.limits)?;
+        let key = self.columns[column].target.key();
+        let search = Search::read(json, path, (column, key), limits, source)?;
         let rows = search.scan().into_iter().map(|number| vec![search.value(number)]).collect();
         self.axes.push(Axis { columns: vec![column], rows, kind: AxisKind::Search });
         self.search = Some(search);
@@ -121,8 +121,8 @@ impl Grid {
         section: Section,
         context: Context<'_>,
     ) -> Result<usize, InputError> {
-        let Context { base, source, .. } = context;
-        let column = target::find(name, path, value, base, section, source)?;
+        let Context { settings, source, .. } = context;
+        let column = target::find(name, path, value, settings, section, source)?;
         if self.columns.iter().any(|known| known.target == column.target) {
             let problem = format!("varies {}, which another axis varies already", column.name);
             return Err(source.error(path, &value.brief(), problem, "each key once"));
@@ -139,11 +139,11 @@ impl Grid {
         path: &str,
         context: Context<'_>,
     ) -> Result<Vec<Value>, InputError> {
-        let Context { source, size, .. } = context;
+        let Context { source, max_points, .. } = context;
         let target = &self.columns[column].target;
         let items = match json {
             Json::List(items) => items,
-            Json::Object(members) => {
+            Json::Object(_) => {
                 if is_search(json) {
                     let problem = "is a search, which cannot vary together with another key";
                     return Err(source.error(
@@ -154,7 +154,7 @@ impl Grid {
                     ));
                 }
                 let key = target.key();
-                return RangeInput { key, members, json, path, source }.values(size);
+                return range::values(key, json, path, source, max_points);
             }
             other => {
                 let mut error = source.error(
@@ -187,11 +187,11 @@ pub(super) fn value(
     path: &str,
     context: Context<'_>,
 ) -> Result<Value, InputError> {
-    let Context { base, source, .. } = context;
+    let Context { settings, source, .. } = context;
     let key = target.key();
     let value = read(key, json, path, source)?;
     if let (Target::Key(STRATEGY), Value::Text(name)) = (target, &value) {
-        base.check_strategy(name, path, source)?;
+        settings.check_strategy(name, path, source)?;
     }
     Ok(value)
 }

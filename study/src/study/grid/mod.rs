@@ -5,14 +5,13 @@ mod points;
 mod varied;
 
 use super::REPLICATES;
-use super::base::Base;
-use super::plan_size::PlanSize;
+use super::filter::Filter;
 use super::search::{Search, is_search};
 use super::target::{Column, Section};
-use crate::input::expression::Expression;
 use crate::input::json::Json;
 use crate::input::keys::STUDY;
-use crate::input::settings::{list, object};
+use crate::input::object::{list, object};
+use crate::input::settings::Settings;
 use crate::input::source::Source;
 use crate::input::value::{Value, json_value};
 use crate::job::result_limit::ResultLimit;
@@ -23,11 +22,11 @@ pub(super) use varied::refuse_varied;
 #[derive(Clone, Copy)]
 pub(super) struct Context<'a> {
     /// The keys outside the grid, and their values.
-    pub base: &'a Base,
+    pub settings: &'a Settings,
     /// What results must meet to be safe.
     pub limits: &'a [ResultLimit],
     pub source: &'a Source,
-    pub size: PlanSize,
+    pub max_points: usize,
 }
 
 /// What a study varies.
@@ -40,7 +39,7 @@ pub(super) struct Grid {
     /// Single points, after the product: positions in `columns`, and values.
     pub points: Vec<Vec<(usize, Value)>>,
     /// Which points the study keeps.
-    pub filter: Option<Expression>,
+    pub filter: Option<Filter>,
     /// The search of a border along one of the axes.
     pub search: Option<Search>,
     /// Names of the measures with a limit.

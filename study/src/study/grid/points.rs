@@ -2,13 +2,13 @@
 
 use super::axis::value;
 use super::{Context, Grid};
-use crate::input::expression::{self, Expression};
+use crate::input::expression;
 use crate::input::json::Json;
-use crate::input::settings::list;
+use crate::input::object::list;
 use crate::input::value::Value;
 use crate::platform::error::InputError;
+use crate::study::filter::Filter;
 use crate::study::target::{self, Section};
-use crate::study::variables::variables;
 
 impl Grid {
     /// Reads the single points.
@@ -17,7 +17,7 @@ impl Grid {
         json: &Json,
         context: Context<'_>,
     ) -> Result<(), InputError> {
-        let Context { base, source, .. } = context;
+        let Context { settings, source, .. } = context;
         let allowed = "a list of objects, as in [{\"N\": 6, \"M\": 3}]";
         for (number, point) in list(json, "grid.points", source, allowed)?.iter().enumerate() {
             let path = format!("grid.points[{number}]");
@@ -28,7 +28,7 @@ impl Grid {
             let mut values: Vec<(usize, Value)> = Vec::new();
             for (name, json) in members {
                 let path = format!("{path}.{name}");
-                let found = target::find(name, &path, json, base, Section::Grid, source)?;
+                let found = target::find(name, &path, json, settings, Section::Grid, source)?;
                 let value = value(&found.target, json, &path, context)?;
                 let known = self.columns.iter().position(|known| known.target == found.target);
                 let column = known.unwrap_or_else(|| {
@@ -61,13 +61,13 @@ impl Grid {
         json: &Json,
         context: Context<'_>,
     ) -> Result<(), InputError> {
-        let Context { base, source, .. } = context;
+        let Context { settings, source, .. } = context;
         let Json::Text(text) = json else {
             let problem = format!("is {}, not a text", json.kind());
             let allowed = "a condition, as in \"N == 6 and feasible\"";
             return Err(source.error("grid.filter", &json.brief(), problem, allowed));
         };
-        let filter = Expression::condition(text, &variables(&self.columns, base));
+        let filter = Filter::read(text, &self.columns, settings);
         let filter = filter.map_err(|error| {
             // The problem shows the expression, so the value does not repeat it.
             let problem = error.to_string();

@@ -13,10 +13,10 @@ mod read;
 pub(crate) mod replay;
 
 pub use levels::{Border, Level, Outcome};
-pub(super) use read::{SearchFile, is_search};
+pub(super) use read::is_search;
 
 use crate::input::json::Json;
-use crate::input::value::json_value;
+use crate::input::value::{Value, json_value};
 use crate::job::result_limit::ResultLimit;
 
 /// Number of values with which a search begins. Chosen: enough to see that an outcome changes twice.
@@ -82,6 +82,12 @@ impl Criterion {
 }
 
 impl Search {
+    /// A value of the key.
+    pub fn value(&self, number: f64) -> Value {
+        #[expect(clippy::cast_possible_truncation, reason = "whole numbers of a key")]
+        if self.integer { Value::Integer(number as i64) } else { Value::Number(number) }
+    }
+
     /// The values with which the search begins.
     pub fn scan(&self) -> Vec<f64> {
         let [low, high] = self.ends;

@@ -3,13 +3,16 @@
 
 use std::collections::{BTreeSet, HashMap};
 
+use billow_solver::output::measures::Verdict;
+
+use super::Criterion;
 use super::levels::{Border, Level, next, outcome};
-use super::read::meets;
 use crate::input::value::Value;
+use crate::job::point::{Point, Searched};
 use crate::job::proportion::Proportion;
 use crate::job::{JobId, Parameters};
+use crate::study::Study;
 use crate::study::finished::FinishedRow;
-use crate::study::{Searched, Study, StudyPoint};
 
 /// The searches of a study with the points planned so far.
 pub(crate) struct Replay<'a> {
@@ -50,14 +53,14 @@ impl<'a> Replay<'a> {
     }
 
     /// Adds points of the searches: runs at their levels.
-    pub fn add(&mut self, points: &[StudyPoint]) {
+    pub fn add(&mut self, points: &[Point]) {
         let grid = &self.study.grid;
         let Some(search) = &grid.search else { return };
         let other = |column: usize| column != search.column && !grid.is_replicate(column);
-        let is_searched = |point: &&StudyPoint| point.searched != Searched::No;
+        let is_searched = |point: &&Point| point.searched != Searched::No;
         for point in points.iter().filter(is_searched) {
             let values: Vec<Value> =
-                point.parameters.iter().map(|(_, value)| value.clone()).collect();
+                point.job.parameters.iter().map(|(_, value)| value.clone()).collect();
             let level = match values.get(search.column) {
                 Some(Value::Number(number)) => *number,
                 Some(Value::Integer(number)) => *number as f64,
@@ -79,7 +82,7 @@ impl<'a> Replay<'a> {
                 }
             };
             // Points that are one job count once.
-            let id = JobId::of(&point.scene);
+            let id = point.job.id.clone();
             if !levels[index].1.iter().any(|run| run.id == id) {
                 levels[index].1.push(Run { id, feasible: point.infeasible.is_none() });
             }
@@ -87,7 +90,7 @@ impl<'a> Replay<'a> {
     }
 
     /// The points of the next generation, in the order of the searches.
-    pub fn next_points(&mut self) -> Vec<StudyPoint> {
+    pub fn next_points(&mut self) -> Vec<Point> {
         let Some(search) = &self.study.grid.search else { return Vec::new() };
         let replicates = self.study.grid.replicate_count();
         let mut points = Vec::new();
@@ -140,7 +143,7 @@ impl<'a> Replay<'a> {
             match self.finished.get(&run.id) {
                 _ if !run.feasible => level.not_judged += 1,
                 None => level.open += 1,
-                Some(row) => match meets(search.criterion, row.verdict, &row.met) {
+                Some(row) => match meets(search.criterion, row) {
                     None => level.not_judged += 1,
                     Some(met) => {
                         level.met.of += 1;
@@ -150,5 +153,15 @@ impl<'a> Replay<'a> {
             }
         }
         level
+    }
+}
+
+/// Whether a row meets a criterion; `None` where nothing can be said.
+fn meets(criterion: Criterion, row: &FinishedRow) -> Option<bool> {
+    match criterion {
+        Criterion::Deployed => row.verdict.map(|verdict| verdict == Verdict::Deployed),
+        Criterion::Limit(index) => row.met.get(index).copied().flatten(),
+        Criterion::Safe if row.met.contains(&Some(false)) => Some(false),
+        Criterion::Safe => row.met.iter().try_fold(true, |all, met| met.map(|met| all && met)),
     }
 }

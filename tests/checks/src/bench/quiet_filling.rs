@@ -13,7 +13,7 @@ use billow_solver::scene::{IntegratorKind, Scene};
 use billow_study::input::value::Value;
 use billow_study::platform::error::{Error, Result};
 use billow_study::study::plan::next_jobs;
-use billow_study::study::{PlanSize, Study};
+use billow_study::study::{MAX_POINTS, Study};
 
 use super::machine::{Watch, core_share};
 use super::{Effort, LARGEST_RUN, Plan, Row};
@@ -87,7 +87,7 @@ fn scenes(subdivisions: u32, effort: Effort) -> Result<Vec<(&'static str, Scene)
         "compression=0".to_owned(),
         "residual_gas=burst".to_owned(),
     ];
-    let study = Study::from_text(STUDY, "studies/paper.json", "bench", &sets, PlanSize::default())?;
+    let study = Study::from_text(STUDY, "studies/paper.json", "bench", &sets, MAX_POINTS)?;
     let points = next_jobs(&study, &[]).map(|first| first.points).unwrap_or_default();
     let scene_of = |strategy: &'static str| {
         let wanted = ("strategy".to_owned(), Value::from(strategy));

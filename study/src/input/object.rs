@@ -1,19 +1,21 @@
-//! Reads an object of a scene by the table of its keys.
+//! Reads values, lists and objects by the tables of their keys.
 
 use nalgebra::Vector3;
 
 use crate::input::json::Json;
-use crate::input::keys::{self, Key, Refusal};
-use crate::input::settings::read;
+use crate::input::keys::{Key, Refusal, Table};
+use crate::input::plausible;
 use crate::input::source::Source;
 use crate::input::value::Value;
 use crate::platform::error::InputError;
+use crate::platform::nearest::or_nearest;
 
 /// An object whose keys are all known.
-pub(super) struct Object<'a> {
+pub(crate) struct Object<'a> {
     json: &'a Json,
     /// Its place in the file, as in `supports[0]`.
     pub path: String,
+    keys: &'static [Key],
     /// Every key it may have.
     names: Vec<&'a str>,
     source: &'a Source,
@@ -38,14 +40,13 @@ impl<'a> Object<'a> {
         };
         for (name, value) in members {
             if !names.contains(&name.as_str()) {
-                let near = keys::nearest(name, names.iter().copied())
-                    .map_or_else(String::new, |near| format!("; did you mean {near}?"));
+                let near = or_nearest(name, names.iter().copied());
                 let problem = format!("is not a key of {what}{near}");
                 let key = format!("{path}.{name}");
                 return Err(source.error(&key, &value.brief(), problem, names.join(", ")));
             }
         }
-        Ok(Self { json, path: path.to_owned(), names, source })
+        Ok(Self { json, path: path.to_owned(), keys, names, source })
     }
 
     /// The value that the file gives a key; `null` counts as not given.
@@ -70,6 +71,11 @@ impl<'a> Object<'a> {
         let mut error = self.error(key.path, "missing", key.allowed());
         error.hint = format!("give it, as in {}", key.sample());
         error
+    }
+
+    /// The value of every key of its table, in their order: given or by default.
+    pub fn values(&self) -> Result<Vec<Value>, InputError> {
+        self.keys.iter().map(|key| self.value(key)).collect()
     }
 
     fn value(&self, key: &Key) -> Result<Value, InputError> {
@@ -113,6 +119,20 @@ impl<'a> Object<'a> {
         self.text(key)?.ok_or_else(|| self.missing(key))
     }
 
+    /// Displacement components, letters of "xyz" in any order; an error where they are not given.
+    pub fn displacements(&self, key: &Key) -> Result<[bool; 3], InputError> {
+        let text = self.needed_text(key)?;
+        let axes = ["x", "y", "z"];
+        let count = |axis: &str| text.matches(axis).count();
+        let known: usize = axes.into_iter().map(count).sum();
+        if text.is_empty() || known < text.chars().count() || axes.into_iter().any(|a| count(a) > 1)
+        {
+            let problem = "does not name displacement components";
+            return Err(self.error(key.path, problem, "letters of \"xyz\", each once"));
+        }
+        Ok(axes.map(|axis| count(axis) == 1))
+    }
+
     fn refused(&self, key: &Key, refusal: Refusal) -> InputError {
         let mut error = self.error(key.path, refusal.problem, refusal.allowed);
         error.hint = format!("write it as in {}", key.sample());
@@ -144,6 +164,89 @@ impl<'a> Object<'a> {
             Ok(vector.normalize())
         } else {
             Err(self.error(key.path, "has no direction", "a vector of any length but 0"))
+        }
+    }
+}
+
+/// Reads one value of a key; `path` is where the file gives it. A value that is not plausible is a
+/// warning of the source.
+pub(crate) fn read(
+    key: &Key,
+    json: &Json,
+    path: &str,
+    source: &Source,
+) -> Result<Value, InputError> {
+    let value = read_silently(key, json, path, source)?;
+    if let Some(implausible) = plausible::check(key, json, &value) {
+        source.warn(path, &json.brief(), implausible);
+    }
+    Ok(value)
+}
+
+/// Reads one value of a key that no user wrote, as a value between the ends of a range.
+pub(crate) fn read_silently(
+    key: &Key,
+    json: &Json,
+    path: &str,
+    source: &Source,
+) -> Result<Value, InputError> {
+    key.read(json).map_err(|refusal| {
+        let mut error = source.error(path, &json.brief(), refusal.problem, refusal.allowed);
+        error.hint = match plausible::meant(key, json) {
+            Some(text) => format!("if {text} is meant, write {text:?}"),
+            None => format!("write it as in {}", key.sample()),
+        };
+        error
+    })
+}
+
+/// Reads one finite number of a key: an end of an axis.
+pub(crate) fn read_number(
+    key: &Key,
+    json: &Json,
+    path: &str,
+    source: &Source,
+) -> Result<f64, InputError> {
+    match read(key, json, path, source)? {
+        Value::Number(number) if number.is_finite() => Ok(number),
+        Value::Integer(number) => Ok(number as f64),
+        _ => Err(source.error(path, &json.brief(), "is a word, not a number", key.allowed())),
+    }
+}
+
+/// The members of an object.
+pub(crate) fn object<'a>(
+    json: &'a Json,
+    table: &Table,
+    path: &str,
+    source: &Source,
+) -> Result<&'a [(String, Json)], InputError> {
+    match json {
+        Json::Object(members) => Ok(members),
+        other => Err(source.error(
+            path,
+            &other.brief(),
+            format!("is {}, not an object", other.kind()),
+            match table.children(path) {
+                names if names.is_empty() => "an object".to_owned(),
+                names => names.join(", "),
+            },
+        )),
+    }
+}
+
+/// The items of a list.
+pub(crate) fn list<'a>(
+    json: &'a Json,
+    path: &str,
+    source: &Source,
+    allowed: &str,
+) -> Result<&'a [Json], InputError> {
+    match json {
+        Json::List(items) => Ok(items),
+        other => {
+            let problem = format!("is {}, not a list", other.kind());
+            Err(source.error(path, &other.brief(), problem, allowed))
         }
     }
 }

@@ -1,9 +1,9 @@
-//! The keys of the objects of a study: strategies, inflow windows, supports.
+//! The keys of the objects of a study: strategies, inflow windows, supports, ranges, searches.
 
-use super::key::Default::{Absent, Number, Required};
+use super::key::Default::{Absent, Number, Required, Word};
 use super::key::{Key, KeyKind, key};
 use super::study::{CLOCK, FLOW_RATE, GAS_MASS, INFLOW_MASS, KELVIN};
-use super::words::{SUPPORT_PLACES, words};
+use super::words::{self, SUPPORT_PLACES, explained, words};
 
 /// The keys of a strategy; paths are those within `strategies.<name>`.
 #[rustfmt::skip]
@@ -34,4 +34,23 @@ pub static CAPSULE_SUPPORT_KEYS: &[Key] = &[
     key("on", KeyKind::Choice(&words(&SUPPORT_PLACES)), Required, "\"bottom_ring\"", "Where it acts."),
     key("fix", KeyKind::Text, Required, "\"xyz\"",
         "Displacement components it holds: letters of xyz, each once."),
+];
+
+/// How the values of an axis are spaced.
+const SPACINGS: &[words::Word] =
+    &[explained("linear", "evenly"), explained("log", "evenly in their logarithm")];
+
+/// The keys of a range, beside `from`, `to` and `step`, which the varied key reads.
+#[rustfmt::skip]
+pub static RANGE_KEYS: &[Key] = &[
+    key("steps", KeyKind::Integer(2, u32::MAX as i64), Absent("step is given"), "5",
+        "Number of values, both ends counted."),
+    key("spacing", KeyKind::Choice(SPACINGS), Word("linear"), "\"log\"", "How its values are spaced."),
+];
+
+/// The keys of a search, beside `bisect` and `tolerance`, which the varied key reads.
+#[rustfmt::skip]
+pub static SEARCH_KEYS: &[Key] = &[
+    key("on", KeyKind::Text, Required, "\"verdict\"", "What changes: verdict, safe, or a measure with a limit."),
+    key("spacing", KeyKind::Choice(SPACINGS), Word("linear"), "\"log\"", "How its values are spaced."),
 ];

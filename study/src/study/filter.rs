@@ -1,0 +1,151 @@
+//! The filter of a grid: which points of the product a study keeps.
+
+use billow_solver::geometry::fold::{FoldError, FoldPattern};
+
+use super::target::{Column, Target};
+use crate::input::expression::{self, Expression, ExpressionError, Type, Variable};
+use crate::input::keys::{self, KEYS, KeyKind, position};
+use crate::input::settings::Settings;
+use crate::input::units::Dimension;
+use crate::input::value::Value;
+
+/// The fold pattern of a design, or why it has none.
+pub(super) type Fold = Result<FoldPattern, FoldError>;
+
+/// Whether the point is feasible.
+const FEASIBLE: &str = "feasible";
+/// The key whose words are the strategies of the study.
+const STRATEGY: usize = position(KEYS, "strategy");
+
+/// A quantity that the fold solves. Its name stands for the solved value, not for the key of the same
+/// name; without a fold, for the value the study asks for, where it has such a key.
+#[derive(Debug, Clone, Copy)]
+struct Solved {
+    name: &'static str,
+    dimension: Dimension,
+    value: fn(&FoldPattern) -> f64,
+    key: Option<usize>,
+}
+
+const fn solved(
+    name: &'static str,
+    dimension: Dimension,
+    value: fn(&FoldPattern) -> f64,
+    key: Option<usize>,
+) -> Solved {
+    Solved { name, dimension, value, key }
+}
+
+const SOLVED: [Solved; 6] = [
+    solved("phi", Dimension::Angle, |pattern| pattern.angles.phi, None),
+    solved("alpha1", Dimension::Angle, |pattern| pattern.angles.alpha1, None),
+    solved("ring_ratio", Dimension::Number, |pattern| pattern.angles.ring_ratio, None),
+    solved(
+        "half_angle",
+        Dimension::Angle,
+        |pattern| pattern.half_angle,
+        Some(position(KEYS, "design.half_angle")),
+    ),
+    solved(
+        "top_radius",
+        Dimension::Length,
+        |pattern| pattern.top_radius,
+        Some(position(KEYS, "design.top_radius")),
+    ),
+    solved(
+        "height",
+        Dimension::Length,
+        |pattern| pattern.height,
+        Some(position(KEYS, "design.height")),
+    ),
+];
+
+/// What a name stands for.
+#[derive(Debug, Clone, PartialEq)]
+enum Named {
+    Feasible,
+    /// Position in [`SOLVED`].
+    Solved(usize),
+    Key(Target),
+}
+
+/// A condition on the points of a study.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Filter {
+    condition: Expression,
+    /// What each of its variables stands for; `None` for those that it does not name.
+    named: Vec<Option<Named>>,
+}
+
+impl Filter {
+    /// Reads a condition on the keys, the varied keys of strategies, and what the fold solves.
+    ///
+    /// # Errors
+    /// When it is no condition on these.
+    pub fn read(
+        text: &str,
+        columns: &[Column],
+        settings: &Settings,
+    ) -> Result<Self, ExpressionError> {
+        let mut variables = vec![(FEASIBLE.to_owned(), Type::Bool, Named::Feasible)];
+        variables.extend(SOLVED.iter().enumerate().map(|(index, solved)| {
+            let kind = Type::Quantity(solved.dimension, &[]);
+            (solved.name.to_owned(), kind, Named::Solved(index))
+        }));
+        let keys = KEYS.iter().enumerate().filter(|(_, key)| key.varies());
+        let keys = keys.flat_map(|(index, key)| {
+            [keys::short_name(index), key.path].map(|name| (name.to_owned(), Target::Key(index)))
+        });
+        let strategies = columns.iter().filter(|column| !matches!(column.target, Target::Key(_)));
+        let strategies = strategies.map(|column| (column.name.clone(), column.target.clone()));
+        for (name, target) in keys.chain(strategies) {
+            if !variables.iter().any(|(known, ..)| *known == name) {
+                variables.push((name, kind(&target, settings), Named::Key(target)));
+            }
+        }
+        let used = expression::names(text);
+        let named = variables
+            .iter()
+            .map(|(name, _, named)| used.contains(name).then(|| named.clone()))
+            .collect();
+        let variables: Vec<Variable> =
+            variables.into_iter().map(|(name, kind, _)| Variable { name, kind }).collect();
+        Ok(Self { condition: Expression::condition(text, &variables)?, named })
+    }
+
+    /// Its text.
+    pub fn text(&self) -> &str {
+        self.condition.text()
+    }
+
+    /// Whether a point meets it.
+    pub fn holds(&self, point: &Settings, fold: &Fold) -> bool {
+        let value = |named: &Option<Named>| match (named, fold) {
+            (None, _) => Value::Null,
+            (Some(Named::Feasible), fold) => Value::Bool(fold.is_ok()),
+            (Some(Named::Solved(index)), Ok(pattern)) => {
+                Value::Number((SOLVED[*index].value)(pattern))
+            }
+            (Some(Named::Solved(index)), Err(_)) => {
+                SOLVED[*index].key.map_or(Value::Null, |key| point.at(key).clone())
+            }
+            (Some(Named::Key(target)), _) => target.value(point),
+        };
+        self.condition.holds(&self.named.iter().map(value).collect::<Vec<_>>())
+    }
+}
+
+fn kind(target: &Target, settings: &Settings) -> Type {
+    match target.key().kind {
+        KeyKind::Quantity(quantity) => Type::Quantity(quantity.dimension, quantity.words),
+        KeyKind::Integer(..) => Type::Quantity(Dimension::Number, &[]),
+        KeyKind::Choice(words) => {
+            Type::Text(Some(words.iter().map(|word| word.name.to_owned()).collect()))
+        }
+        KeyKind::Text if *target == Target::Key(STRATEGY) => {
+            Type::Text(Some(settings.strategies.keys().cloned().collect()))
+        }
+        // A study has no key that is a flag or a vector.
+        KeyKind::Text | KeyKind::Flag | KeyKind::Vector(_) => Type::Text(None),
+    }
+}
