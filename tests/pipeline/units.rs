@@ -114,11 +114,11 @@ fn times_that_do_not_fit_the_run_are_warnings() {
         for expected in [
             "gas.residual_gas_mass = 0.01 kg (and 3 more points): enters at gas.burst_rate (0.005 kg/s) \
              for 2 s, beyond solver.end_time (0.6 s): only 30 % enter",
-            "strategies.late.inflow[0].from = 0.7 s: starts at 0.7 s, after solver.end_time (0.6 s)",
-            "strategies.long.inflow[0].to = 2 s: ends at 2 s: its part after solver.end_time (0.6 s), \
+            "strategies.late.inflow[0].from = 0.7 s: is after solver.end_time (0.6 s)",
+            "strategies.long.inflow[0].to = 2 s: is after solver.end_time (0.6 s): the part after it, \
              70 % of its gas, is ignored",
             "strategies.hold.release_time = 0.59 s: leaves 0.01 s of a run of 0.6 s",
-            "outputs.sample_interval = 0.1 s (and 3 more points): samples a run of 0.6 s only 7 times",
+            "outputs.sample_interval = 0.1 s (and 3 more points): gives 7 sample(s) in a run of 0.6 s",
         ] {
             assert!(said.contains(expected), "{expected}: {said}");
         }
@@ -141,8 +141,8 @@ fn a_scene_warns_as_well() {
     for expected in [
         "film.density = 1.4: is 1.4 kg/m3, outside the plausible range",
         "if 1.4 g/cm3 is meant",
-        "gas.windows[0].to = 1: is after solver.end_time (1e-6 s)",
-        "outputs.sample_interval = 1: samples a run of 1e-6 s only 1 time(s)",
+        "gas.windows[0].to = 1 s: is after solver.end_time (1e-6 s)",
+        "outputs.sample_interval = 1 s: gives 1 sample(s) in a run of 1e-6 s",
     ] {
         assert!(said.contains(expected), "{expected}: {said}");
     }

@@ -7,7 +7,7 @@ pub mod json;
 pub mod keys;
 pub(crate) mod object;
 pub(crate) mod overrides;
-mod parts;
+pub(crate) mod parts;
 pub(crate) mod place;
 pub(crate) mod plausible;
 pub mod schema;

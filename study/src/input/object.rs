@@ -67,103 +67,111 @@ impl<'a> Object<'a> {
     }
 
     /// The error of a key that the file does not give.
-    pub fn missing(&self, key: &Key) -> InputError {
-        let mut error = self.error(key.path, "missing", key.allowed());
-        error.hint = format!("give it, as in {}", key.sample());
-        error
+    pub fn missing(&self, name: &str) -> InputError {
+        let key = self.key(name);
+        let next = format!("give it, as in {}", key.sample());
+        self.error(name, "missing", key.allowed()).with_hint(next)
+    }
+
+    /// The row of a key.
+    fn key(&self, name: &str) -> &'static Key {
+        let key = self.keys.iter().find(|key| key.path == name);
+        key.unwrap_or_else(|| unreachable!("{} has no key {name}", self.path))
     }
 
     /// The value of every key of its table, in their order: given or by default.
     pub fn values(&self) -> Result<Vec<Value>, InputError> {
-        self.keys.iter().map(|key| self.value(key)).collect()
+        self.keys.iter().map(|key| self.value(key.path)).collect()
     }
 
-    fn value(&self, key: &Key) -> Result<Value, InputError> {
-        match self.given(key.path) {
-            Some(json) => read(key, json, &format!("{}.{}", self.path, key.path), self.source),
-            None => Ok(key.default_value()),
+    fn value(&self, name: &str) -> Result<Value, InputError> {
+        match self.given(name) {
+            Some(json) => read(self.key(name), json, &format!("{}.{name}", self.path), self.source),
+            None => Ok(self.key(name).default_value()),
         }
     }
 
     /// A number, given or by default.
-    pub fn number(&self, key: &Key) -> Result<Option<f64>, InputError> {
-        match self.value(key)? {
-            Value::Number(number) => Ok(Some(number)),
-            _ => Ok(None),
-        }
+    pub fn number(&self, name: &str) -> Result<Option<f64>, InputError> {
+        Ok(self.value(name)?.number())
     }
 
     /// A number, given or by default; an error without either.
-    pub fn needed(&self, key: &Key) -> Result<f64, InputError> {
-        self.number(key)?.ok_or_else(|| self.missing(key))
+    pub fn needed(&self, name: &str) -> Result<f64, InputError> {
+        self.number(name)?.ok_or_else(|| self.missing(name))
     }
 
     /// A whole number of 32 bits, given or by default; an error without either.
-    pub fn count(&self, key: &Key) -> Result<u32, InputError> {
-        match self.value(key)? {
-            Value::Integer(number) => u32::try_from(number).map_err(|_| self.missing(key)),
-            _ => Err(self.missing(key)),
+    pub fn count(&self, name: &str) -> Result<u32, InputError> {
+        match self.value(name)? {
+            Value::Integer(number) => u32::try_from(number).map_err(|_| self.missing(name)),
+            _ => Err(self.missing(name)),
         }
     }
 
     /// A word or a text, given or by default.
-    pub fn text(&self, key: &Key) -> Result<Option<String>, InputError> {
-        match self.value(key)? {
+    pub fn text(&self, name: &str) -> Result<Option<String>, InputError> {
+        match self.value(name)? {
             Value::Text(text) => Ok(Some(text)),
             _ => Ok(None),
         }
     }
 
     /// A word or a text, given or by default; an error without either.
-    pub fn needed_text(&self, key: &Key) -> Result<String, InputError> {
-        self.text(key)?.ok_or_else(|| self.missing(key))
+    pub fn needed_text(&self, name: &str) -> Result<String, InputError> {
+        self.text(name)?.ok_or_else(|| self.missing(name))
     }
 
     /// Displacement components, letters of "xyz" in any order; an error where they are not given.
-    pub fn displacements(&self, key: &Key) -> Result<[bool; 3], InputError> {
-        let text = self.needed_text(key)?;
+    pub fn displacements(&self, name: &str) -> Result<[bool; 3], InputError> {
+        let text = self.needed_text(name)?;
         let axes = ["x", "y", "z"];
         let count = |axis: &str| text.matches(axis).count();
         let known: usize = axes.into_iter().map(count).sum();
         if text.is_empty() || known < text.chars().count() || axes.into_iter().any(|a| count(a) > 1)
         {
             let problem = "does not name displacement components";
-            return Err(self.error(key.path, problem, "letters of \"xyz\", each once"));
+            return Err(self.error(name, problem, "letters of \"xyz\", each once"));
         }
         Ok(axes.map(|axis| count(axis) == 1))
     }
 
-    fn refused(&self, key: &Key, refusal: Refusal) -> InputError {
-        let mut error = self.error(key.path, refusal.problem, refusal.allowed);
-        error.hint = format!("write it as in {}", key.sample());
-        error
+    /// What a key reads from its value, where given.
+    fn read<T>(
+        &self,
+        name: &str,
+        read: fn(&Key, &Json) -> Result<T, Refusal>,
+    ) -> Result<Option<T>, InputError> {
+        let Some(json) = self.given(name) else { return Ok(None) };
+        let key = self.key(name);
+        read(key, json).map(Some).map_err(|Refusal { problem, allowed }| {
+            let next = format!("write it as in {}", key.sample());
+            self.error(name, problem, allowed).with_hint(next)
+        })
     }
 
     /// Three numbers, where given.
-    pub fn vector(&self, key: &Key) -> Result<Option<Vector3<f64>>, InputError> {
-        let Some(json) = self.given(key.path) else { return Ok(None) };
-        let read = key.read_vector(json);
-        read.map(|vector| Some(vector.into())).map_err(|refusal| self.refused(key, refusal))
+    pub fn vector(&self, name: &str) -> Result<Option<Vector3<f64>>, InputError> {
+        Ok(self.read(name, Key::read_vector)?.map(Vector3::from))
     }
 
     /// Three numbers; an error where they are not given.
-    pub fn needed_vector(&self, key: &Key) -> Result<Vector3<f64>, InputError> {
-        self.vector(key)?.ok_or_else(|| self.missing(key))
+    pub fn needed_vector(&self, name: &str) -> Result<Vector3<f64>, InputError> {
+        self.vector(name)?.ok_or_else(|| self.missing(name))
     }
 
     /// Three numbers or `null`s, where given.
-    pub fn components(&self, key: &Key) -> Result<[Option<f64>; 3], InputError> {
-        let Some(json) = self.given(key.path) else { return Ok([None; 3]) };
-        key.read_components(json).map_err(|refusal| self.refused(key, refusal))
+    pub fn components(&self, name: &str) -> Result<[Option<f64>; 3], InputError> {
+        Ok(self.read(name, Key::read_components)?.unwrap_or_default())
     }
 
     /// A direction as a unit vector; an error where it is not given or zero.
-    pub fn direction(&self, key: &Key) -> Result<Vector3<f64>, InputError> {
-        let vector = self.needed_vector(key)?;
+    pub fn direction(&self, name: &str) -> Result<Vector3<f64>, InputError> {
+        let vector = self.needed_vector(name)?;
         if vector.norm() > 0.0 {
             Ok(vector.normalize())
         } else {
-            Err(self.error(key.path, "has no direction", "a vector of any length but 0"))
+            Err(self.error(name, "has no direction", "a vector of any length but 0"))
         }
     }
 }
@@ -191,12 +199,12 @@ pub(crate) fn read_silently(
     source: &Source,
 ) -> Result<Value, InputError> {
     key.read(json).map_err(|refusal| {
-        let mut error = source.error(path, &json.brief(), refusal.problem, refusal.allowed);
-        error.hint = match plausible::meant(key, json) {
-            Some(text) => format!("if {text} is meant, write {text:?}"),
-            None => format!("write it as in {}", key.sample()),
-        };
-        error
+        source.error(path, &json.brief(), refusal.problem, refusal.allowed).with_hint(
+            match plausible::meant(key, json) {
+                Some(text) => format!("if {text} is meant, write {text:?}"),
+                None => format!("write it as in {}", key.sample()),
+            },
+        )
     })
 }
 

@@ -55,9 +55,8 @@ fn apply_one(
     let value = value_of(set, value)?;
     let has_grid = table.structured.iter().any(|(path, _)| *path == GRID);
     if !has_grid && (name == GRID || name.starts_with("grid.")) {
-        let mut error = refused(set, "a scene has no grid");
-        "set the key itself, or use a study file with billow plan".clone_into(&mut error.hint);
-        return Err(error);
+        return Err(refused(set, "a scene has no grid")
+            .with_hint("set the key itself, or use a study file with billow plan"));
     }
     for section in [GRID, REPLICATES].into_iter().filter(|_| has_grid) {
         if let Some(axis) = name.strip_prefix(section).and_then(|rest| rest.strip_prefix('.')) {

@@ -6,9 +6,10 @@ use billow_solver::scene::{
 };
 
 use crate::input::keys::{CAPS, CHIRALITIES, FITS, INTEGRATORS, ISOTHERMAL, SPECIES};
+use crate::input::plausible::Implausible;
 use crate::input::settings::Settings;
 use crate::input::source::{Source, shown};
-use crate::input::value::Value;
+use crate::input::value::{Value, brief_number};
 use crate::platform::error::InputError;
 
 impl Settings {
@@ -109,4 +110,27 @@ impl Settings {
     pub fn integrator(&self, source: &Source) -> Result<IntegratorKind, InputError> {
         self.word("solver.integrator", &INTEGRATORS, source)
     }
+}
+
+/// Warns of a window, between these times (s), that starts or ends after the run. `end` is the key that gives
+/// its end, with its value.
+pub(crate) fn warn_of_end(
+    path: &str,
+    [from, to]: [f64; 2],
+    end: (&str, String),
+    end_time: f64,
+    source: &Source,
+) {
+    let part = if from >= end_time {
+        "the window".to_owned()
+    } else if to > end_time {
+        let part = brief_number(100.0 * (to - end_time) / (to - from));
+        format!("the part after it, {part} % of its gas,")
+    } else {
+        return;
+    };
+    let (key, value) = if from >= end_time { ("from", format!("{} s", shown(from))) } else { end };
+    let problem = format!("is after solver.end_time ({} s): {part} is ignored", shown(end_time));
+    let next = "change it, or raise solver.end_time".to_owned();
+    source.warn_point(&format!("{path}.{key}"), &value, Implausible { problem, next });
 }

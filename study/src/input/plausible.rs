@@ -7,9 +7,6 @@ use crate::input::syntax::parse;
 use crate::input::units::{self, Dimension, DisplayUnit, written_unit};
 use crate::input::value::{Value, short_number};
 
-/// Number of samples that a run has at least, without a warning. Chosen: fewer cannot show a deployment.
-pub(crate) const MIN_SAMPLES: f64 = 20.0;
-
 /// Why a value is not plausible.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Implausible {

@@ -9,6 +9,7 @@ use serde_json::{Map, json};
 use crate::input::json::Json;
 use crate::input::keys::{KEYS, Key, Named, STUDY, Table, pick, position};
 use crate::input::object::{object, read};
+use crate::input::plausible::Implausible;
 use crate::input::source::{Source, shown};
 use crate::input::strategy::{Strategy, read_strategy};
 use crate::input::supports;
@@ -144,14 +145,14 @@ impl Settings {
         let known: Vec<&str> = self.strategies.keys().map(String::as_str).collect();
         let near = nearest(name, known.iter().copied());
         let near = near.map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
-        let mut error = source.error(
-            key,
-            &Json::Text(name.to_owned()).brief(),
-            format!("is not a strategy of this study{near}"),
-            known.join(", "),
-        );
-        "name one of these, or define it under strategies".clone_into(&mut error.hint);
-        Err(error)
+        Err(source
+            .error(
+                key,
+                &Json::Text(name.to_owned()).brief(),
+                format!("is not a strategy of this study{near}"),
+                known.join(", "),
+            )
+            .with_hint("name one of these, or define it under strategies"))
     }
 
     /// Settings, strategies and supports, with every value they have.
@@ -245,9 +246,9 @@ impl Settings {
 }
 
 fn missing_key(key: &Key, source: &Source) -> InputError {
-    let mut error = source.error(key.path, "", "missing", key.allowed());
-    error.hint = format!("give it, as in {}", key.sample());
-    error
+    source
+        .error(key.path, "", "missing", key.allowed())
+        .with_hint(format!("give it, as in {}", key.sample()))
 }
 
 /// A gas given by its constants has both.
@@ -281,13 +282,25 @@ pub(crate) fn check_version(tree: &Json, source: &Source) -> Result<(), InputErr
 /// Largest number of samples of one run (chosen: more is an error in a unit).
 const MAX_SAMPLES: f64 = 1e6;
 
-/// Refuses a run with more than [`MAX_SAMPLES`] samples. Times in s.
+/// Number of samples that a run has at least, without a warning. Chosen: fewer cannot show a deployment.
+const MIN_SAMPLES: f64 = 20.0;
+
+/// Refuses a run with more than [`MAX_SAMPLES`] samples, and warns of one with few. Times in s.
 pub(crate) fn check_sample_interval(
     interval: f64,
     end_time: f64,
     source: &Source,
 ) -> Result<(), InputError> {
     if end_time / interval <= MAX_SAMPLES {
+        if end_time < MIN_SAMPLES * interval {
+            let samples = (end_time / interval * (1.0 + 1e-9)).floor() + 1.0;
+            let end_time = shown(end_time);
+            let problem =
+                format!("gives {samples} sample(s) in a run of {end_time} s, too few for times");
+            let next = "check its unit; the default is \"1 ms\"".to_owned();
+            let value = format!("{} s", shown(interval));
+            source.warn_point("outputs.sample_interval", &value, Implausible { problem, next });
+        }
         return Ok(());
     }
     Err(source.error(

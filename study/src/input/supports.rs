@@ -3,7 +3,7 @@
 use billow_solver::scene::{Support, SupportLocation};
 
 use crate::input::json::Json;
-use crate::input::keys::{CAPSULE_SUPPORT_KEYS, Named, SUPPORT_PLACES, named};
+use crate::input::keys::{CAPSULE_SUPPORT_KEYS, Named, SUPPORT_PLACES};
 use crate::input::object::{Object, list};
 use crate::input::source::Source;
 use crate::platform::error::InputError;
@@ -24,8 +24,8 @@ pub(crate) fn read(json: Option<&Json>, source: &Source) -> Result<Vec<Support>,
     for (index, item) in list(json, "supports", source, allowed)?.iter().enumerate() {
         let path = format!("supports[{index}]");
         let object = Object::new(item, &path, "a support", CAPSULE_SUPPORT_KEYS, &[], source)?;
-        let on = object.needed_text(const { named(CAPSULE_SUPPORT_KEYS, "on") })?;
-        let held = object.displacements(const { named(CAPSULE_SUPPORT_KEYS, "fix") })?;
+        let on = object.needed_text("on")?;
+        let held = object.displacements("fix")?;
         let place = SUPPORT_PLACES.iter().position(|place| place.name == on).unwrap_or_default();
         for (fixed, held) in fixed[place].iter_mut().zip(held) {
             *fixed |= held;

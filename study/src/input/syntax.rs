@@ -170,7 +170,7 @@ fn tree(value: &ast::Value<'_>, text: &str, path: &str) -> Result<Json, Fault> {
     }
 }
 
-/// An open object or list on the way to a fault.
+/// An object or list that is open where a fault stands.
 struct Open {
     offset: usize,
     bracket: char,

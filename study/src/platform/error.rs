@@ -63,6 +63,14 @@ pub struct InputError {
     pub hint: String,
 }
 
+impl InputError {
+    /// The same error with this next step.
+    #[must_use]
+    pub fn with_hint(self, hint: impl Into<String>) -> Self {
+        Self { hint: hint.into(), ..self }
+    }
+}
+
 impl std::fmt::Display for InputError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let lines = |text: &str| quote::cut_lines(text, MAX_PROBLEM);

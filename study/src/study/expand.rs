@@ -119,13 +119,11 @@ fn count(grid: &Grid, source: &Source, max_points: usize) -> Result<(usize, usiz
     }
     let size = all.map_or_else(|| "more than 10^19".to_owned(), |count| count.to_string());
     let allowed = format!("up to {max_points} points");
-    let mut error = source.error("grid", "", format!("has {size} points"), allowed);
-    error.hint = format!(
+    Err(source.error("grid", "", format!("has {size} points"), allowed).with_hint(format!(
         "give {} fewer values; a search finds a border with few points ({{\"bisect\": [low, high], \"on\": …}}); a \
          filter counts after this; or make several studies",
         longest_axes(grid)
-    );
-    Err(error)
+    )))
 }
 
 /// The axes with the most values, two at most: "film.thickness (1000 values) and N (500 values)".

@@ -54,16 +54,13 @@ pub(super) fn check_gas_inside(gas: &GasSupply, source: &Source) -> Result<(), I
     if gas.ambient_pressure <= 0.0 || gas.initial_mass > 0.0 {
         return Ok(());
     }
-    let mut error = source.error(
+    Err(source.error(
         "gas.ambient_pressure",
         &shown(gas.ambient_pressure),
         "presses on a stowed capsule without gas inside, which implodes",
         "gas inside from the start, or 0 (orbit)",
-    );
-    "store air: \"residual_gas\": \"ambient\" fills the folds at ambient pressure; \"stored\" takes a \
-     residual_gas_mass"
-        .clone_into(&mut error.hint);
-    Err(error)
+    ).with_hint("store air: \"residual_gas\": \"ambient\" fills the folds at ambient pressure; \"stored\" takes a \
+     residual_gas_mass"))
 }
 
 /// Pressure of the stored gas over the ambient pressure below which a note says so. Chosen: a little less gas

@@ -7,7 +7,7 @@
 //! ```
 
 use crate::input::json::Json;
-use crate::input::keys::{Key, KeyKind, RANGE_KEYS, named};
+use crate::input::keys::{Key, KeyKind, RANGE_KEYS};
 use crate::input::object::{Object, read_number, read_silently};
 use crate::input::source::Source;
 use crate::input::units;
@@ -43,12 +43,12 @@ pub(super) fn values(
     if from >= to {
         return Err(refuse("`from` is not below `to`"));
     }
-    let is_log = object.text(const { named(RANGE_KEYS, "spacing") })?.as_deref() == Some("log");
+    let is_log = object.text("spacing")?.as_deref() == Some("log");
     if is_log && from <= 0.0 {
         return Err(refuse("has logarithmic spacing, so `from` must be above 0"));
     }
     let count = match (object.given("steps"), object.given("step")) {
-        (Some(_), None) => object.count(const { named(RANGE_KEYS, "steps") })?.into(),
+        (Some(_), None) => object.count("steps")?.into(),
         (None, Some(_)) if is_log => {
             return Err(refuse("has logarithmic spacing, so it needs `steps`"));
         }

@@ -2,15 +2,17 @@
 
 use billow_solver::geometry::fold::FoldDesign;
 use billow_solver::scene::{
-    InflowWindow, IntegratorKind, ModelKind, Outputs, Scene, Solver, Stepping, Thresholds,
+    IntegratorKind, ModelKind, Outputs, Scene, Solver, Stepping, Thresholds,
 };
 
 use super::ground;
-use super::schedule::Schedule;
+use super::inflow::Inflow;
 use crate::input::keys::{self, MODEL_KINDS, RESIDUAL_GAS, ResidualGas};
+use crate::input::plausible::Implausible;
 use crate::input::settings::{Settings, check_sample_interval};
 use crate::input::source::{Source, shown};
-use crate::input::strategy::{Strategy, Window};
+use crate::input::strategy::Strategy;
+use crate::input::value::brief_number;
 use crate::platform::error::InputError;
 
 /// The scene of a point: the values of its keys, completed by its strategy and its model.
@@ -18,41 +20,40 @@ use crate::platform::error::InputError;
 /// # Errors
 /// When a key is missing, or two keys contradict each other.
 pub(super) fn scene(
-    point: &Settings,
+    settings: &Settings,
     design: FoldDesign,
     source: &Source,
 ) -> Result<Scene, InputError> {
-    let settings = point;
     let film = settings.film(source)?;
     let model = settings.word("solver.model", &MODEL_KINDS, source)?;
     let end_time = settings.needed("solver.end_time", source)?;
     let sample_interval = settings.needed("outputs.sample_interval", source)?;
     check_sample_interval(sample_interval, end_time, source)?;
-    let name = point.strategy_name();
-    let Some(strategy) = point.strategies.get(name) else {
-        point.check_strategy(name, "strategy", source)?;
+    let name = settings.strategy_name();
+    let Some(strategy) = settings.strategies.get(name) else {
+        settings.check_strategy(name, "strategy", source)?;
         return Err(settings.missing("strategy", source));
     };
     check_release(name, strategy, end_time, source)?;
-    let inflow = Inflow::of(point, source)?;
-    let windows = Windows { point, name, strategy, inflow: &inflow, end_time, source };
-    let stored_mass = match inflow.residual {
+    let windows = Inflow { settings, name, strategy, end_time, source }.windows()?;
+    let residual_mass = settings.needed("gas.residual_gas_mass", source)?;
+    let stored_mass = match settings.word("gas.residual_gas", &RESIDUAL_GAS, source)? {
         ResidualGas::Burst => 0.0,
-        ResidualGas::Stored => inflow.residual_mass,
+        ResidualGas::Stored => residual_mass,
         ResidualGas::Ambient => {
-            ground::mass_at_ambient_pressure(&design, settings, inflow.residual_mass, source)?
+            ground::mass_at_ambient_pressure(&design, settings, residual_mass, source)?
         }
     };
     let initial_mass = strategy.preinflation_mass() + stored_mass;
-    let gas = settings.gas(initial_mass, windows.resolve()?, source)?;
+    let gas = settings.gas(initial_mass, windows, source)?;
     ground::check_gas_inside(&gas, source)?;
     let has_film = keys::model(model).has_film;
     let seed = settings.whole("seed", source)?;
-    let scene = Scene {
+    Ok(Scene {
         design,
         film,
         gas,
-        supports: point.supports.clone(),
+        supports: settings.supports.clone(),
         contact: settings.contact(source)?,
         gravity: settings.needed("gravity", source)?,
         release_time: strategy.release_time(),
@@ -82,13 +83,14 @@ pub(super) fn scene(
         seed,
         // Without an imperfection its amplitude is not physics.
         imperfection_amplitude: settings.number("imperfection_amplitude").filter(|_| seed > 0),
-    };
-    let burst = (inflow.burst_mass(), inflow.burst_rate);
-    Schedule { point, scene: &scene, burst, source }.check();
-    Ok(scene)
+    })
 }
 
-/// Refuses a capsule that is released after the end of its run.
+/// Fraction of the run that a released capsule needs at least, without a warning. Chosen: the verdict is
+/// that of the last tenth.
+const MIN_FREE_FRACTION: f64 = 0.1;
+
+/// Refuses a capsule that is released after the end of its run; warns of one that has no time to deploy.
 fn check_release(
     name: &str,
     strategy: &Strategy,
@@ -96,44 +98,24 @@ fn check_release(
     source: &Source,
 ) -> Result<(), InputError> {
     let release_time = strategy.release_time();
-    if release_time < end_time {
+    let key = format!("strategies.{name}.release_time");
+    let free = end_time - release_time;
+    if free > 0.0 {
+        if release_time > 0.0 && free < MIN_FREE_FRACTION * end_time {
+            let (free, end_time) = (brief_number(free), shown(end_time));
+            let problem = format!("leaves {free} s of a run of {end_time} s for the deployment");
+            let next = "release earlier, or raise solver.end_time".to_owned();
+            let value = format!("{} s", shown(release_time));
+            source.warn_point(&key, &value, Implausible { problem, next });
+        }
         return Ok(());
     }
     Err(source.error(
-        &format!("strategies.{name}.release_time"),
+        &key,
         &shown(release_time),
         "the run ends before the capsule is released",
         format!("below solver.end_time, {} s", shown(end_time)),
     ))
-}
-
-/// Residual gas, and what a study lets in where a window does not say otherwise.
-struct Inflow {
-    /// Temperature of a window that gives none, K.
-    temperature: f64,
-    /// Residual gas, kg.
-    residual_mass: f64,
-    /// How residual gas enters.
-    residual: ResidualGas,
-    /// Mass flow rate of a burst, kg/s.
-    burst_rate: f64,
-}
-
-impl Inflow {
-    fn of(point: &Settings, source: &Source) -> Result<Self, InputError> {
-        let settings = point;
-        Ok(Self {
-            temperature: settings.needed("gas.inflow_temperature", source)?,
-            residual_mass: settings.needed("gas.residual_gas_mass", source)?,
-            residual: settings.word("gas.residual_gas", &RESIDUAL_GAS, source)?,
-            burst_rate: settings.needed("gas.burst_rate", source)?,
-        })
-    }
-
-    /// Residual gas let in as a burst, kg.
-    fn burst_mass(&self) -> f64 {
-        if self.residual == ResidualGas::Burst { self.residual_mass } else { 0.0 }
-    }
 }
 
 /// How a model chooses its step.
@@ -155,89 +137,6 @@ fn stepping(
         (false, None) => {
             settings.needed("solver.stepping.adaptive", source).map(Stepping::Adaptive)
         }
-    }
-}
-
-/// What the inflow windows of a point follow from.
-struct Windows<'a> {
-    point: &'a Settings,
-    /// Name of the strategy.
-    name: &'a str,
-    strategy: &'a Strategy,
-    inflow: &'a Inflow,
-    /// End of the run, s.
-    end_time: f64,
-    source: &'a Source,
-}
-
-impl Windows<'_> {
-    /// Inflow windows in order of time. Windows without inflow before the end are left out, and
-    /// windows that last beyond the end are cut there, so that equal physics gives an equal job.
-    fn resolve(&self) -> Result<Vec<InflowWindow>, InputError> {
-        let mut windows = self.burst();
-        for (index, window) in self.strategy.windows().enumerate() {
-            windows.push(self.window(index, &window)?);
-        }
-        for window in &mut windows {
-            window.to = window.to.min(self.end_time);
-        }
-        windows.retain(|window| window.mass_flow_rate > 0.0 && window.from < window.to);
-        windows.sort_by(|a, b| {
-            a.from
-                .total_cmp(&b.from)
-                .then(a.to.total_cmp(&b.to))
-                .then(a.mass_flow_rate.total_cmp(&b.mass_flow_rate))
-                .then(a.temperature.total_cmp(&b.temperature))
-        });
-        Ok(windows)
-    }
-
-    /// The burst of residual gas from release on.
-    fn burst(&self) -> Vec<InflowWindow> {
-        let mass = self.inflow.burst_mass();
-        if mass <= 0.0 {
-            return Vec::new();
-        }
-        let release_time = self.strategy.release_time();
-        let rate = self.inflow.burst_rate;
-        vec![InflowWindow {
-            from: release_time,
-            to: release_time + mass / rate,
-            mass_flow_rate: rate,
-            temperature: self.inflow.temperature,
-        }]
-    }
-
-    /// One window of the strategy, with the study's values where it gives none.
-    fn window(&self, index: usize, window: &Window) -> Result<InflowWindow, InputError> {
-        let from = window.from.unwrap_or(self.strategy.release_time());
-        let rate = match window.mass_flow_rate {
-            Some(rate) => rate,
-            None => self.point.needed("gas.mass_flow_rate", self.source)?,
-        };
-        let to = match (window.to, window.mass) {
-            (Some(_), Some(mass)) => {
-                return Err(self.source.error(
-                    &format!("strategies.{}.inflow[{index}].mass", self.name),
-                    &shown(mass),
-                    "the window gives both its end and its mass",
-                    "`to` or `mass`",
-                ));
-            }
-            (Some(to), None) => to,
-            (None, Some(mass)) if rate > 0.0 => from + mass / rate,
-            (None, _) => self.end_time.max(from),
-        };
-        if to <= from && (to < from || window.to.is_some()) {
-            return Err(self.source.error(
-                &format!("strategies.{}.inflow[{index}].to", self.name),
-                &shown(to),
-                "the window ends before it begins",
-                format!("above its `from`, {} s", shown(from)),
-            ));
-        }
-        let temperature = window.temperature.unwrap_or(self.inflow.temperature);
-        Ok(InflowWindow { from, to, mass_flow_rate: rate, temperature })
     }
 }
 

@@ -1,4 +1,4 @@
-//! From a text to a checked expression: operators by precedence, types on the way.
+//! From a text to a checked expression: operators by precedence, types as soon as they are known.
 
 use super::lexer::{Token, tokens};
 use super::node::{Node, Operator};

@@ -49,37 +49,54 @@ pub struct Entry {
     pub meaning: String,
 }
 
+/// The parts of a kind of file.
+pub(crate) struct Parts {
+    /// The keys that hold one value.
+    pub table: &'static Table,
+    /// The keys of its objects, by path.
+    pub objects: &'static [(&'static str, &'static [Key])],
+    /// Paths within its objects that hold more than one value, and their meanings.
+    pub meanings: &'static [(&'static str, &'static str)],
+}
+
+/// The objects of a study file.
+static STUDY_OBJECTS: &[(&str, &[Key])] = &[
+    ("supports[]", CAPSULE_SUPPORT_KEYS),
+    ("strategies.<name>", STRATEGY_KEYS),
+    ("strategies.<name>.inflow[]", WINDOW_KEYS),
+];
+
+/// The objects of a scene file.
+static SCENE_OBJECTS: &[(&str, &[Key])] = &[
+    ("mesh", MESH_KEYS),
+    ("gas.windows[]", SCENE_WINDOW_KEYS),
+    ("supports[]", SUPPORT_KEYS),
+    ("supports[].body", BODY_KEYS),
+    ("supports[].move", MOVE_KEYS),
+    ("supports[].move.rotation", ROTATION_KEYS),
+    ("contact.plates[]", PLATE_KEYS),
+    ("contact.plates[].move", MOVE_KEYS),
+    ("start", START_KEYS),
+    ("start.spin", SPIN_KEYS),
+    ("", std::slice::from_ref(&GRAVITY[0])),
+    ("outputs", OUTPUT_KEYS),
+];
+
+impl FileKind {
+    /// Its tables of keys.
+    pub(crate) fn parts(self) -> Parts {
+        match self {
+            Self::Study => Parts { table: &STUDY, objects: STUDY_OBJECTS, meanings: GRID_MEANINGS },
+            Self::Scene => {
+                Parts { table: &SCENE, objects: SCENE_OBJECTS, meanings: OBJECT_MEANINGS }
+            }
+        }
+    }
+}
+
 /// Every key of a kind of file, in the order of the documentation.
 pub fn entries(file: FileKind) -> Vec<Entry> {
-    let (table, objects, meanings): (&Table, Vec<(&str, &[Key])>, _) = match file {
-        FileKind::Study => (
-            &STUDY,
-            vec![
-                ("supports[]", CAPSULE_SUPPORT_KEYS),
-                ("strategies.<name>", STRATEGY_KEYS),
-                ("strategies.<name>.inflow[]", WINDOW_KEYS),
-            ],
-            GRID_MEANINGS,
-        ),
-        FileKind::Scene => (
-            &SCENE,
-            vec![
-                ("mesh", MESH_KEYS),
-                ("gas.windows[]", SCENE_WINDOW_KEYS),
-                ("supports[]", SUPPORT_KEYS),
-                ("supports[].body", BODY_KEYS),
-                ("supports[].move", MOVE_KEYS),
-                ("supports[].move.rotation", ROTATION_KEYS),
-                ("contact.plates[]", PLATE_KEYS),
-                ("contact.plates[].move", MOVE_KEYS),
-                ("start", START_KEYS),
-                ("start.spin", SPIN_KEYS),
-                ("", &GRAVITY[..1]),
-                ("outputs", OUTPUT_KEYS),
-            ],
-            OBJECT_MEANINGS,
-        ),
-    };
+    let Parts { table, objects, meanings } = file.parts();
     let mut entries: Vec<Entry> = table.keys.iter().map(|key| entry("", key)).collect();
     let structured = table.structured.iter().filter(|(path, _)| *path != "gravity");
     entries.extend(structured.chain(meanings).map(|(path, meaning)| Entry {

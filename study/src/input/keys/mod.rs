@@ -19,10 +19,9 @@ pub use objects::{
     BODY_KEYS, MESH_KEYS, MOVE_KEYS, OUTPUT_KEYS, PLATE_KEYS, ROTATION_KEYS, SCENE_WINDOW_KEYS,
     SPIN_KEYS, START_KEYS, SUPPORT_KEYS,
 };
-pub(crate) use objects::{FLAT, GRAVITY, NEAR, object_meaning};
+pub(crate) use objects::{FLAT, GRAVITY, NEAR};
 pub use quantity::Quantity;
 pub(crate) use quantity::whole;
-pub(crate) use study::GRID_MEANINGS;
 pub use study::{KEYS, SECTIONS};
 pub use study_objects::{
     CAPSULE_SUPPORT_KEYS, RANGE_KEYS, SEARCH_KEYS, STRATEGY_KEYS, WINDOW_KEYS,

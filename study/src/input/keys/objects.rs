@@ -4,7 +4,7 @@
 //! a name without a row does not compile ([`super::key::named`]).
 
 use super::key::Default::{Absent, Integer, Number, Required, Word};
-use super::key::{Key, KeyKind, above, from, key, likely, same_text, vector};
+use super::key::{Key, KeyKind, above, from, key, likely, vector};
 use super::study::{CLOCK, FLOW_RATE, KELVIN, SAMPLE_INTERVAL};
 use super::words::{self, PROFILES, explained, plain, words};
 use crate::input::units::Dimension;
@@ -189,19 +189,3 @@ pub(crate) const OBJECT_MEANINGS: &[(&str, &str)] = &[
          first of the file, or the one nearest to a position; named by an object.",
     ),
 ];
-
-/// The meaning of a key of [`OBJECT_MEANINGS`]. In a `const` block, an unknown path is a compile
-/// error.
-///
-/// # Panics
-/// When no row has this path.
-pub(crate) const fn object_meaning(path: &str) -> &'static str {
-    let mut index = 0;
-    while index < OBJECT_MEANINGS.len() {
-        if same_text(OBJECT_MEANINGS[index].0, path) {
-            return OBJECT_MEANINGS[index].1;
-        }
-        index += 1;
-    }
-    panic!("no object key has this path")
-}

@@ -42,15 +42,12 @@ pub(super) fn check(
                     <[f64; 3]>::from(direction),
                     a.name
                 );
-                let mut error = source.error(
+                return Err(source.error(
                     &format!("supports[{second}]"),
                     &format!("{:?}", b.name),
                     problem,
                     "one motion along each direction of a node; nothing else along the normal of a body",
-                );
-                "leave the node, or a letter of fix, out of one of the two"
-                    .clone_into(&mut error.hint);
-                return Err(error);
+                ).with_hint("leave the node, or a letter of fix, out of one of the two"));
             }
         }
     }

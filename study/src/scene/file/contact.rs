@@ -8,7 +8,7 @@ use billow_solver::scene::plate::Plate;
 
 use super::{is_static, motion};
 use crate::input::json::Json;
-use crate::input::keys::{PLATE_KEYS, named};
+use crate::input::keys::PLATE_KEYS;
 use crate::input::object::{Object, list};
 use crate::input::settings::Settings;
 use crate::input::source::Source;
@@ -58,7 +58,7 @@ pub(super) fn check_plates(film: &FilmScene, source: &Source) -> Result<(), Inpu
         let gap = plate.smallest_gap(&positions, 0.0);
         if gap < MIN_PLATE_GAP {
             let [x, y, z] = [plate.point.x, plate.point.y, plate.point.z];
-            let mut error = source.error(
+            return Err(source.error(
                 &format!("contact.plates[{index}]"),
                 &format!("\"{}\" through ({x}, {y}, {z})", plate.name),
                 if gap > -MIN_PLATE_GAP {
@@ -67,10 +67,7 @@ pub(super) fn check_plates(film: &FilmScene, source: &Source) -> Result<(), Inpu
                     format!("has film up to {:.6} m behind it", -gap)
                 },
                 "a plate with all film on the side its normal points to, with a gap, however small",
-            );
-            "move its point back (by a micrometre), or reverse its normal"
-                .clone_into(&mut error.hint);
-            return Err(error);
+            ).with_hint("move its point back (by a micrometre), or reverse its normal"));
         }
     }
     Ok(())
@@ -111,7 +108,7 @@ fn plates(
         if motion.is_some_and(|motion| motion.rotation.is_some()) {
             return Err(object.error("move", "a plate cannot rotate", "a translation alone"));
         }
-        let name = match object.text(const { named(PLATE_KEYS, "name") })? {
+        let name = match object.text("name")? {
             Some(name) => name,
             None if index == 0 => "plate".to_owned(),
             None => format!("plate_{}", index + 1),
@@ -126,12 +123,10 @@ fn plates(
         }
         plates.push(Plate {
             name,
-            point: object.needed_vector(const { named(PLATE_KEYS, "point") })?,
-            normal: object.direction(const { named(PLATE_KEYS, "normal") })?,
+            point: object.needed_vector("point")?,
+            normal: object.direction("normal")?,
             motion,
-            removal_time: object
-                .number(const { named(PLATE_KEYS, "until") })?
-                .unwrap_or(f64::INFINITY),
+            removal_time: object.number("until")?.unwrap_or(f64::INFINITY),
         });
     }
     Ok(plates)

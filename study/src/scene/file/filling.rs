@@ -12,10 +12,10 @@ use nalgebra::Vector3;
 use super::is_static;
 use super::shape::Shape;
 use crate::input::json::Json;
-use crate::input::keys::{SCENE_WINDOW_KEYS, named};
+use crate::input::keys::SCENE_WINDOW_KEYS;
 use crate::input::object::Object;
 use crate::input::object::list;
-use crate::input::plausible::Implausible;
+use crate::input::parts::warn_of_end;
 use crate::input::settings::Settings;
 use crate::input::source::{Source, shown};
 use crate::platform::error::InputError;
@@ -140,8 +140,8 @@ fn windows(
     for (index, json) in list(json, "gas.windows", source, allowed)?.iter().enumerate() {
         let path = format!("gas.windows[{index}]");
         let window = Object::new(json, &path, "an inflow window", SCENE_WINDOW_KEYS, &[], source)?;
-        let from = window.needed(const { named(SCENE_WINDOW_KEYS, "from") })?;
-        let to = window.number(const { named(SCENE_WINDOW_KEYS, "to") })?;
+        let from = window.needed("from")?;
+        let to = window.number("to")?;
         let to = to.unwrap_or(end_time.max(from));
         if to < from || (to <= from && window.given("to").is_some()) {
             let problem = "the window ends before it begins";
@@ -151,12 +151,9 @@ fn windows(
                 format!("above its `from`, {} s", shown(from)),
             ));
         }
-        if let Some((key, value, problem)) = beyond_the_end(from, to, end_time) {
-            let next = "change it, or raise solver.end_time".to_owned();
-            source.warn(&format!("{path}.{key}"), &shown(value), Implausible { problem, next });
-        }
-        let rate = window.needed(const { named(SCENE_WINDOW_KEYS, "mass_flow_rate") })?;
-        let temperature = window.needed(const { named(SCENE_WINDOW_KEYS, "temperature") })?;
+        warn_of_end(&path, [from, to], ("to", format!("{} s", shown(to))), end_time, source);
+        let rate = window.needed("mass_flow_rate")?;
+        let temperature = window.needed("temperature")?;
         windows.push(InflowWindow {
             from,
             to: to.min(end_time),
@@ -167,19 +164,6 @@ fn windows(
     windows.retain(|window| window.mass_flow_rate > 0.0 && window.from < window.to);
     windows.sort_by(|a, b| a.from.total_cmp(&b.from).then(a.to.total_cmp(&b.to)));
     Ok(windows)
-}
-
-/// The key, value and problem of a window that starts or ends after the run.
-fn beyond_the_end(from: f64, to: f64, end_time: f64) -> Option<(&'static str, f64, String)> {
-    if from >= end_time {
-        let problem =
-            format!("is after solver.end_time ({} s): the window is ignored", shown(end_time));
-        return Some(("from", from, problem));
-    }
-    let problem = || {
-        format!("is after solver.end_time ({} s): the part after it is ignored", shown(end_time))
-    };
-    (to > end_time).then(|| ("to", to, problem()))
 }
 
 /// Largest enclosed volume that counts as zero, as a fraction of A^(3/2) of the film's area A (chosen:
@@ -201,27 +185,28 @@ fn check_outward(shape: &Shape, source: &Source) -> Result<f64, InputError> {
     let positions = &shape.shell.positions;
     let volume = shape.shell.volume(|node| positions[node as usize]);
     if encloses_nothing(shape) {
-        let mut error = source.error(
-            "mesh.positions",
-            &Json::Text(shape.file.clone()).brief(),
-            "encloses no volume: its layers touch each other",
-            "film that encloses a volume where there is gas",
-        );
-        "separate the layers a little, or give gas.pressure".clone_into(&mut error.hint);
-        return Err(error);
+        return Err(source
+            .error(
+                "mesh.positions",
+                &Json::Text(shape.file.clone()).brief(),
+                "encloses no volume: its layers touch each other",
+                "film that encloses a volume where there is gas",
+            )
+            .with_hint("separate the layers a little, or give gas.pressure"));
     }
     if volume > 0.0 {
         return Ok(volume);
     }
-    let mut error = source.error(
-        "mesh.positions",
-        &Json::Text(shape.file.clone()).brief(),
-        format!("encloses {} m³: its faces are wound inward", shown(volume)),
-        "faces counter-clockwise seen from outside",
-    );
-    "flip the normals of all faces (and of those of closure), or reverse every f line"
-        .clone_into(&mut error.hint);
-    Err(error)
+    Err(source
+        .error(
+            "mesh.positions",
+            &Json::Text(shape.file.clone()).brief(),
+            format!("encloses {} m³: its faces are wound inward", shown(volume)),
+            "faces counter-clockwise seen from outside",
+        )
+        .with_hint(
+            "flip the normals of all faces (and of those of closure), or reverse every f line",
+        ))
 }
 
 /// Closes an open film by fans. Film that is open only because its seams are not joined is an error.
@@ -243,7 +228,7 @@ fn close(
         match seen.insert(bits, *node) {
             Some(other) if other != *node => {
                 let vertex = |node| shape.numbering.vertex(node).map_or(0, |vertex| vertex + 1);
-                let mut error = source.error(
+                return Err(source.error(
                     "mesh.positions",
                     &Json::Text(shape.file.clone()).brief(),
                     format!(
@@ -254,11 +239,8 @@ fn close(
                         vertex(*node),
                     ),
                     "film with its seams joined where there is gas inside",
-                );
-                "join the seam there, or set mesh.weld to 0 (joins vertices that coincide) or to a \
-                 tolerance"
-                    .clone_into(&mut error.hint);
-                return Err(error);
+                ).with_hint("join the seam there, or set mesh.weld to 0 (joins vertices that coincide) or to a \
+                 tolerance"));
             }
             _ => {}
         }

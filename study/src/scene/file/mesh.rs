@@ -14,7 +14,7 @@ use super::reference::{flattened, reference};
 use super::shape::{Numbering, Shape};
 use super::weld;
 use crate::input::json::Json;
-use crate::input::keys::{MESH_KEYS, named};
+use crate::input::keys::MESH_KEYS;
 use crate::input::object::Object;
 use crate::input::source::Source;
 use crate::platform::error::{Error, InputError, Result};
@@ -24,8 +24,8 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
     let source = reader.source.clone();
     let object =
         Object::new(json, "mesh", "a mesh", MESH_KEYS, &["reference", "closure"], &source)?;
-    let file = object.needed_text(const { named(MESH_KEYS, "positions") })?;
-    let scale = object.needed(const { named(MESH_KEYS, "scale") })?;
+    let file = object.needed_text("positions")?;
+    let scale = object.needed("scale")?;
     let mut surface = surface(reader, "mesh.positions", &file, 0)?;
     for vertex in &mut surface.vertices {
         *vertex *= scale;
@@ -34,7 +34,7 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
         let problem = "has no faces";
         return Err(object.error("positions", problem, "an OBJ file with f lines").into());
     }
-    let tolerance = object.number(const { named(MESH_KEYS, "weld") })?;
+    let tolerance = object.number("weld")?;
     let joined = weld::joined(&surface.vertices, tolerance);
     let closes = closing_groups(&object, &surface)?;
     let outside = closing_file(&object, &surface, &file, reader)?;
@@ -201,10 +201,7 @@ pub(super) fn check_closure(
          determine where it moves"
     );
     let allowed = "faces whose edge is film all round, with vertices that the edge surrounds";
-    let mut error = source.error("mesh.closure", "", problem, allowed);
-    "make the vertex part of the film, close the faces without it, or hold it with a support (fix xyz)"
-        .clone_into(&mut error.hint);
-    Err(error)
+    Err(source.error("mesh.closure", "", problem, allowed).with_hint("make the vertex part of the film, close the faces without it, or hold it with a support (fix xyz)"))
 }
 
 /// What `closure` may be, for errors.

@@ -158,9 +158,6 @@ impl SceneFile {
             outputs::read(tree.get("outputs"), &shape, &mut notes, &reader.source)?;
         let end_time = end_time(&settings, &reader.source)?;
         check_sample_interval(outputs.sample_interval, end_time, &reader.source)?;
-        if !statics {
-            outputs::check_samples(outputs.sample_interval, end_time, &reader.source);
-        }
         let contact = contact?;
         if contact.is_none() && !statics && shape.folded {
             notes

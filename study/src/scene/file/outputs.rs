@@ -9,10 +9,9 @@ use nalgebra::Vector3;
 use super::selection::{triangle, vertex};
 use super::shape::Shape;
 use crate::input::json::Json;
-use crate::input::keys::{NEAR, OUTPUT_KEYS, named};
+use crate::input::keys::{NEAR, OUTPUT_KEYS};
 use crate::input::object::Object;
-use crate::input::plausible::{Implausible, MIN_SAMPLES};
-use crate::input::source::{Source, shown};
+use crate::input::source::Source;
 use crate::platform::error::InputError;
 
 /// Names of what is recorded, in the order of [`FilmOutputs`].
@@ -88,23 +87,12 @@ pub(super) fn read(
     collect(&object, "elements", ELEMENTS, &mut elements, &element)?;
     let (names, nodes) = nodes.into_iter().unzip();
     let (element_names, elements) = elements.into_iter().unzip();
-    let sample_interval = object.needed(const { named(OUTPUT_KEYS, "sample_interval") })?;
-    let frames = object.count(const { named(OUTPUT_KEYS, "frames") })?;
+    let sample_interval = object.needed("sample_interval")?;
+    let frames = object.count("frames")?;
     Ok((
         FilmOutputs { sample_interval, nodes, elements, frames },
         Recorded { nodes: names, elements: element_names },
     ))
-}
-
-/// Warns of a run with few samples. Times in s.
-pub(super) fn check_samples(interval: f64, end_time: f64, source: &Source) {
-    if end_time >= MIN_SAMPLES * interval {
-        return;
-    }
-    let samples = (end_time / interval).floor() + 1.0;
-    let problem = format!("samples a run of {} s only {samples} time(s)", shown(end_time));
-    let next = "check its unit; the default is \"1 ms\"".to_owned();
-    source.warn("outputs.sample_interval", &shown(interval), Implausible { problem, next });
 }
 
 const NODES: &str = "vertices by number, 0 for the first of the file, or positions [x, y, z] (the node \

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::shape::Shape;
 use crate::input::json::Json;
-use crate::input::keys::{SUPPORT_KEYS, named, whole};
+use crate::input::keys::whole;
 use crate::input::object::Object;
 use crate::platform::error::InputError;
 
@@ -28,12 +28,12 @@ const PLANE_TOLERANCE: f64 = 1e-6;
 impl Plane {
     /// Reads the plane of a support.
     pub fn read(object: &Object<'_>, shape: &Shape) -> Result<Self, InputError> {
-        let point = object.needed_vector(const { named(SUPPORT_KEYS, "point") })?;
-        let tolerance = match object.number(const { named(SUPPORT_KEYS, "tolerance") })? {
+        let point = object.needed_vector("point")?;
+        let tolerance = match object.number("tolerance")? {
             Some(tolerance) => tolerance,
             None => PLANE_TOLERANCE * shape.size(),
         };
-        let normal = object.direction(const { named(SUPPORT_KEYS, "normal") })?;
+        let normal = object.direction("normal")?;
         Ok(Self { normal, point, tolerance })
     }
 
@@ -57,8 +57,8 @@ pub(super) fn nodes(
     };
     let (nodes, region) = match (on, plane) {
         ("box", _) => {
-            let min = object.components(const { named(SUPPORT_KEYS, "min") })?;
-            let max = object.components(const { named(SUPPORT_KEYS, "max") })?;
+            let min = object.components("min")?;
+            let max = object.components("max")?;
             let inside = |x: Vector3<f64>| {
                 (0..3).all(|k| {
                     min[k].is_none_or(|min| x[k] >= min) && max[k].is_none_or(|max| x[k] <= max)

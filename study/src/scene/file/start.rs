@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use super::reader::Reader;
 use super::shape::Shape;
 use crate::input::json::Json;
-use crate::input::keys::{SPIN_KEYS, START_KEYS, named};
+use crate::input::keys::{SPIN_KEYS, START_KEYS};
 use crate::input::object::Object;
 use crate::input::source::Source;
 use crate::platform::error::Result;
@@ -24,12 +24,12 @@ pub(super) fn velocities(
     let Some(json) = json else { return Ok(Vec::new()) };
     let source = reader.source.clone();
     let object = Object::new(json, "start", "a start", START_KEYS, &["spin"], &source)?;
-    let uniform = object.vector(const { named(START_KEYS, "velocity") })?.unwrap_or_default();
+    let uniform = object.vector("velocity")?.unwrap_or_default();
     let mut velocities = vec![uniform; shape.shell.positions.len()];
     if let Some(json) = object.given("spin") {
         add_spin(&mut velocities, json, shape, &source)?;
     }
-    if let Some(name) = object.text(const { named(START_KEYS, "velocities") })? {
+    if let Some(name) = object.text("velocities")? {
         add_file(&mut velocities, &name, &object, shape, reader)?;
     }
     Ok(velocities)
@@ -43,9 +43,9 @@ fn add_spin(
     source: &Source,
 ) -> Result<()> {
     let spin = Object::new(json, "start.spin", "a spin", SPIN_KEYS, &[], source)?;
-    let centre = spin.vector(const { named(SPIN_KEYS, "centre") })?.unwrap_or_default();
-    let rate = spin.needed(const { named(SPIN_KEYS, "rate") })?;
-    let angular_velocity = spin.direction(const { named(SPIN_KEYS, "axis") })? * rate;
+    let centre = spin.vector("centre")?.unwrap_or_default();
+    let rate = spin.needed("rate")?;
+    let angular_velocity = spin.direction("axis")? * rate;
     for (velocity, position) in velocities.iter_mut().zip(&shape.shell.positions) {
         *velocity += angular_velocity.cross(&(position - centre));
     }

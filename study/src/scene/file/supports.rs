@@ -9,7 +9,7 @@ use super::motion;
 use super::selection::{self, Plane};
 use super::shape::Shape;
 use crate::input::json::Json;
-use crate::input::keys::{BODY_KEYS, SUPPORT_KEYS, named};
+use crate::input::keys::{BODY_KEYS, SUPPORT_KEYS};
 use crate::input::object::{Object, list};
 use crate::input::settings::Settings;
 use crate::input::source::Source;
@@ -92,8 +92,8 @@ fn support(
     shape: &Shape,
     source: &Source,
 ) -> Result<FilmSupport, InputError> {
-    let on = object.needed_text(const { named(SUPPORT_KEYS, "on") })?;
-    let which = const { named(SUPPORT_KEYS, "which") };
+    let on = object.needed_text("on")?;
+    let which = "which";
     let on = match (on.as_str(), object.text(which)?) {
         ("ring" | "cap", None) => return Err(object.missing(which)),
         ("ring" | "cap", Some(which)) => format!("{which}_{on}"),
@@ -107,7 +107,7 @@ fn support(
         .map(|json| motion::read(json, &format!("{}.move", object.path), settings, source))
         .transpose()?;
     let hold = hold(object, plane, motion.is_some(), source)?;
-    let name = object.text(const { named(SUPPORT_KEYS, "name") })?.unwrap_or(on);
+    let name = object.text("name")?.unwrap_or(on);
     Ok(FilmSupport { name, nodes, hold, motion })
 }
 
@@ -129,13 +129,13 @@ fn hold(
             let body = Object::new(json, &path, "a body", BODY_KEYS, &[], source)?;
             Ok(Hold::Body(PlaneBody {
                 normal,
-                mass: body.needed(const { named(BODY_KEYS, "mass") })?,
-                velocity: body.needed(const { named(BODY_KEYS, "velocity") })?,
-                force: body.needed(const { named(BODY_KEYS, "force") })?,
+                mass: body.needed("mass")?,
+                velocity: body.needed("velocity")?,
+                force: body.needed("force")?,
             }))
         }
         (Some(Plane { normal, .. }), None) if !fix => Ok(Hold::Plane(normal)),
-        _ => object.displacements(const { named(SUPPORT_KEYS, "fix") }).map(Hold::Components),
+        _ => object.displacements("fix").map(Hold::Components),
     }
 }
 

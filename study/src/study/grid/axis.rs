@@ -107,9 +107,9 @@ impl Grid {
         let problem = format!(
             "{count} replicates can never exclude one half: their Wilson interval is too wide"
         );
-        let mut error = source.error(&path, "", problem, "no replicates, or 4 and more");
-        "give \"replicates\": {\"seed\": 5}".clone_into(&mut error.hint);
-        Err(error)
+        Err(source
+            .error(&path, "", problem, "no replicates, or 4 and more")
+            .with_hint("give \"replicates\": {\"seed\": 5}"))
     }
 
     /// Adds the column of a key; refuses a key that another axis varies.

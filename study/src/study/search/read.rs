@@ -2,7 +2,7 @@
 
 use super::{Criterion, Search, Spacing, Tolerance};
 use crate::input::json::Json;
-use crate::input::keys::{Key, KeyKind, SEARCH_KEYS, named};
+use crate::input::keys::{Key, KeyKind, SEARCH_KEYS};
 use crate::input::object::{Object, list, read_number};
 use crate::input::source::Source;
 use crate::input::units::{self, Dimension};
@@ -59,7 +59,7 @@ impl Search {
         if ends[0] >= ends[1] {
             return refuse("`bisect` does not begin below its end", allowed);
         }
-        let spacing = object.text(const { named(SEARCH_KEYS, "spacing") })?;
+        let spacing = object.text("spacing")?;
         let spacing =
             if spacing.as_deref() == Some("log") { Spacing::Log } else { Spacing::Linear };
         if spacing == Spacing::Log && ends[0] <= 0.0 {
@@ -75,7 +75,7 @@ impl Search {
 
 fn criterion(object: &Object<'_>, limits: &[ResultLimit]) -> Result<Criterion, InputError> {
     let names = || limits.iter().map(|limit| limit.measure.name());
-    let name = object.needed_text(const { named(SEARCH_KEYS, "on") })?;
+    let name = object.needed_text("on")?;
     let known = || [VERDICT, SAFE].into_iter().chain(names().filter(|name| *name != VERDICT));
     let problem = match name.as_str() {
         SAFE if limits.is_empty() => {

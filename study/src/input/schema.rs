@@ -1,0 +1,326 @@
+//! The JSON Schemas (2020-12) of the study file and the scene file, built from the tables of keys.
+//!
+//! A schema says what each key may hold. The program itself checks which values are allowed together
+//! (a fit and what it needs, a key given or varied), and the values of an axis.
+
+use std::fmt::Write as _;
+
+use serde_json::{Map, Value as Json, json};
+
+use crate::input::keys::listing::{FileKind, Parts};
+use crate::input::keys::{
+    self, Default, FLAT, GRAVITY, KEYS, Key, KeyKind, NEAR, Quantity, RANGE_KEYS, SEARCH_KEYS,
+};
+use crate::input::units::{self, Dimension};
+use crate::input::value::{Value, json_value};
+
+/// Names a strategy may have.
+const NAME: &str = "^[A-Za-z_][A-Za-z0-9_]{0,63}$";
+/// Names of what a scene records.
+const RECORDED: &str = "^[A-Za-z0-9_.-]{1,64}$";
+/// Displacement components: letters of xyz, each at most once.
+const COMPONENTS: &str = "^(?!.*(.).*\\1)[xyz]{1,3}$";
+/// A number at the start of a text.
+const NUMBER: &str = r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*";
+/// A unit of several symbols or powers; the program checks which ones it reads.
+const COMPOUND: &str = r"[^\s0-9][^\s]*[/^*·0-9 ].*";
+
+/// The schema of a study file.
+pub fn study_schema() -> Json {
+    let mut schema = schema(
+        FileKind::Study,
+        "billow study",
+        "A question about inflatable capsules: one design, film, gas and solver, and a grid of what varies. A number is SI; a text carries its unit.",
+    );
+    schema["properties"]["checksum"] = json!({
+        "title": "checksum",
+        "description": "That of study.json in a results folder; ignored in a study file.",
+        "type": "string",
+    });
+    schema["$defs"]["axis"] = axis();
+    schema
+}
+
+/// The schema of a scene file.
+pub fn scene_schema() -> Json {
+    let mut schema = schema(
+        FileKind::Scene,
+        "billow scene",
+        "One capsule or any mesh for `billow solve`. A number is SI; a text carries its unit. Vertices and triangles are counted from 0 in file order.",
+    );
+    schema["oneOf"] = json!([{"required": ["design"]}, {"required": ["mesh"]}]);
+    schema
+}
+
+fn schema(file: FileKind, title: &str, description: &str) -> Json {
+    let Parts { table, objects, meanings } = file.parts();
+    let mut root = json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": title,
+        "description": description,
+        "type": "object",
+        "additionalProperties": false,
+    });
+    for (path, _) in table.sections {
+        extend(place(&mut root, path), json!({"type": "object", "additionalProperties": false}));
+    }
+    for key in &table.keys {
+        extend(place(&mut root, key.path), property(key));
+    }
+    for (parent, keys) in objects {
+        let object = if parent.is_empty() { &mut root } else { place(&mut root, parent) };
+        for key in *keys {
+            object["properties"][key.path] = property(key);
+        }
+        if parent.is_empty() {
+            continue;
+        }
+        let required = keys.iter().filter(|key| matches!(key.default, Default::Required));
+        let required: Vec<&str> = required.map(|key| key.path).collect();
+        let title = title_of(parent.trim_end_matches("[]"));
+        let object_schema = json!({
+            "title": title, "type": "object", "additionalProperties": false, "required": required,
+        });
+        extend(object, object_schema);
+    }
+    for (path, meaning) in table.sections.iter().chain(table.structured).chain(meanings) {
+        if !path.starts_with("grid.") {
+            let schema = place(&mut root, path);
+            extend(schema, json!({"title": title_of(path), "description": meaning}));
+            extend(schema, form(file, path));
+        }
+    }
+    // A gas is a name, or an object of its constants.
+    let species = place(&mut root, "gas.species");
+    let mut object = species.clone();
+    object["required"] = json!(["gas_constant", "cp"]);
+    let names = object.as_object_mut().and_then(|object| object.remove("enum"));
+    *species = json!({
+        "title": "species",
+        "description": object["description"],
+        "oneOf": [{"enum": names, "default": object["default"]}, object],
+    });
+    root["$defs"] = Dimension::all()
+        .map(|dimension| (definition(dimension), quantity_text(dimension)))
+        .collect::<Map<_, _>>()
+        .into();
+    root
+}
+
+/// The schema at a path: `[]` stands for the items of a list, `<name>` for any name.
+fn place<'a>(root: &'a mut Json, path: &str) -> &'a mut Json {
+    path.split('.').fold(root, |schema, part| match part.strip_suffix("[]") {
+        _ if part == "<name>" => &mut schema["patternProperties"][NAME],
+        Some(list) => {
+            let list = &mut schema["properties"][list];
+            list["type"] = json!("array");
+            &mut list["items"]
+        }
+        None => &mut schema["properties"][part],
+    })
+}
+
+fn extend(schema: &mut Json, more: Json) {
+    match (schema, more) {
+        (Json::Object(schema), Json::Object(more)) => schema.extend(more),
+        (schema @ Json::Null, more) => *schema = more,
+        _ => {}
+    }
+}
+
+/// What a key with more than one value may hold, beside the keys of its object.
+fn form(file: FileKind, path: &str) -> Json {
+    let error = json!({"oneOf": [
+        {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1},
+        {"type": "string", "pattern": r"^\s*[0-9.]+(e-?[0-9]+)?\s*%?\s*$"},
+    ]});
+    let meshes = |least: u32| {
+        let mesh = json!({"type": "integer", "minimum": 1});
+        json!({"type": "array", "items": mesh, "minItems": least, "maxItems": 3, "uniqueItems": true})
+    };
+    let numbers = json!({"type": "integer", "minimum": 0});
+    match path {
+        "accuracy" => json!({"oneOf": [error["oneOf"][0], error["oneOf"][1], {
+            "type": "object", "properties": {"meshes": meshes(1)}, "additionalProperties": error,
+            "minProperties": 1,
+        }]}),
+        "solver.meshes" => meshes(2),
+        "solver.stepping" => json!({"maxProperties": 1}),
+        "strategies" => json!({"type": "object", "additionalProperties": false}),
+        "strategies.<name>.inflow" => json!({"default": [{}]}),
+        "supports" if file == FileKind::Study => {
+            json!({"default": [{"on": "bottom_ring", "fix": "xyz"}]})
+        }
+        "units" => json!({
+            "type": "object", "additionalProperties": {"type": "string", "minLength": 1},
+        }),
+        "limits" => json!({"type": "object", "additionalProperties": {"oneOf": [
+            {"type": "boolean"},
+            {"enum": ["deployed", "partial", "stalled"]},
+            {"type": "string", "pattern": "^ *[<>]=? *[-+]?[0-9.]"},
+        ]}}),
+        "grid" => {
+            let mut grid = axes();
+            let point = json!({"type": "object", "minProperties": 1});
+            grid["properties"]["points"] = json!({"type": "array", "items": point});
+            grid["properties"]["zip"] = json!({"type": "array", "items": axes()});
+            grid["properties"]["filter"] = json!({"type": "string"});
+            grid
+        }
+        "replicates" => {
+            let mut replicates = axes();
+            let count = json!({"type": "integer", "minimum": 1});
+            replicates["properties"]["seed"] = json!({"oneOf": [count, {"$ref": "#/$defs/axis"}]});
+            replicates
+        }
+        "gravity" => {
+            let [along, vector] = GRAVITY.each_ref().map(property);
+            let items = json!({
+                "type": "array", "items": vector["items"], "minItems": 3, "maxItems": 3,
+            });
+            json!({"default": 0.0, "type": null, "oneOf": [items, {"oneOf": along["oneOf"]}]})
+        }
+        "mesh.reference" => {
+            let KeyKind::Quantity(length) = FLAT else { unreachable!("a length") };
+            let corner = json!({
+                "type": "array", "items": quantity_forms(length), "minItems": 2, "maxItems": 3,
+            });
+            let face = json!({"type": "array", "items": corner, "minItems": 3});
+            json!({"oneOf": [{"type": "string"}, {"type": "array", "items": face}]})
+        }
+        "mesh.closure" => json!({"oneOf": [
+            {"type": "string"}, {"type": "array", "items": {"type": "string"}},
+        ]}),
+        "supports[].nodes" => json!({"type": "array", "items": numbers, "minItems": 1}),
+        "outputs.nodes" | "outputs.elements" => {
+            let pick = json!({"oneOf": [numbers, property(&NEAR)]});
+            let named = json!({
+                "type": "object", "patternProperties": {RECORDED: pick},
+                "additionalProperties": false,
+            });
+            let items = json!({"oneOf": [numbers, named]});
+            json!({"oneOf": [named, {"type": "array", "items": items}]})
+        }
+        "outputs" | "mesh" | "start" | "supports[].move" => json!({"type": "object"}),
+        _ => json!({}),
+    }
+}
+
+/// Axes by the names of their keys.
+fn axes() -> Json {
+    let axis = json!({"$ref": "#/$defs/axis"});
+    let varied = KEYS.iter().enumerate().filter(|(_, key)| key.varies());
+    let names = varied.flat_map(|(index, key)| [keys::short_name(index), key.path]);
+    let properties: Map<_, _> = names.map(|name| (name.to_owned(), axis.clone())).collect();
+    json!({
+        "type": "object",
+        "properties": properties,
+        "patternProperties": {r"^strategies\.[A-Za-z_][A-Za-z0-9_]*\.": axis},
+        "additionalProperties": false,
+    })
+}
+
+/// A list of values, a range or a search.
+fn axis() -> Json {
+    let object = |keys: &[Key], more: &[&str], required: &[&str]| {
+        let known = keys.iter().map(|key| (key.path.to_owned(), property(key)));
+        let properties: Map<_, _> =
+            more.iter().map(|name| ((*name).to_owned(), json!(true))).chain(known).collect();
+        json!({
+            "type": "object", "properties": properties, "required": required,
+            "additionalProperties": false,
+        })
+    };
+    let mut range = object(RANGE_KEYS, &["from", "to", "step"], &["from", "to"]);
+    range["oneOf"] = json!([{"required": ["steps"]}, {"required": ["step"]}]);
+    let search = object(SEARCH_KEYS, &["bisect", "tolerance"], &["bisect", "on"]);
+    json!({"oneOf": [{"type": "array", "minItems": 1}, range, search]})
+}
+
+/// A key with its title, description, default and example.
+fn property(key: &Key) -> Json {
+    let mut description = key.meaning();
+    match key.default {
+        Default::Absent(meaning) => {
+            let _ = write!(description, " Default: {meaning}.");
+        }
+        Default::Required => description.push_str(" Required; in a study, here or under grid."),
+        _ => {}
+    }
+    if let KeyKind::Quantity(quantity) = key.kind
+        && quantity.dimension != Dimension::Number
+    {
+        let units = quantity.dimension.units();
+        let _ =
+            write!(description, " A number in {}, or with a unit: {}.", units[0], units.join(", "));
+        if let Some(plausible) = quantity.plausible_range() {
+            let _ = write!(description, " Plausible: {plausible}.");
+        }
+    }
+    let mut schema = json!({"title": title_of(key.path), "description": description});
+    let default = key.default_value();
+    if default != Value::Null {
+        schema["default"] = json_value(&default);
+    }
+    if let Ok(example) = serde_json::from_str::<Json>(key.example) {
+        schema["examples"] = json!([example]);
+    }
+    extend(&mut schema, kind(key));
+    schema
+}
+
+/// What a key may hold.
+fn kind(key: &Key) -> Json {
+    match key.kind {
+        KeyKind::Quantity(quantity) => quantity_forms(quantity),
+        KeyKind::Integer(min, max) => json!({"type": "integer", "minimum": min, "maximum": max}),
+        KeyKind::Choice(words) => {
+            json!({"enum": words.iter().map(|word| word.name).collect::<Vec<_>>()})
+        }
+        KeyKind::Text if key.path == "fix" => json!({"type": "string", "pattern": COMPONENTS}),
+        KeyKind::Text => json!({"type": "string"}),
+        KeyKind::Flag => json!({"type": "boolean"}),
+        KeyKind::Vector(quantity) => {
+            let mut component = quantity_forms(quantity);
+            if let (true, Json::Array(forms)) =
+                (matches!(key.path, "min" | "max"), &mut component["oneOf"])
+            {
+                forms.push(json!({"type": "null"}));
+            }
+            json!({"type": "array", "items": component, "minItems": 3, "maxItems": 3})
+        }
+    }
+}
+
+/// A quantity as a number, as a text with a unit, as a word.
+fn quantity_forms(quantity: Quantity) -> Json {
+    let min = if quantity.above { "exclusiveMinimum" } else { "minimum" };
+    let number = json!({"type": "number", min: quantity.min, "maximum": quantity.max});
+    let text = json!({"$ref": format!("#/$defs/{}", definition(quantity.dimension))});
+    let words: Vec<&str> = quantity.words.iter().map(|(word, _)| *word).collect();
+    match words.is_empty() {
+        true => json!({"oneOf": [number, text]}),
+        false => json!({"oneOf": [number, text, {"enum": words}]}),
+    }
+}
+
+/// Name of the definition of a dimension's texts.
+fn definition(dimension: Dimension) -> String {
+    let name = dimension.name();
+    name.split_once(' ').map_or(name, |(_, name)| name).replace(' ', "_")
+}
+
+/// A number with a unit of the dimension, as far as a pattern can say it.
+fn quantity_text(dimension: Dimension) -> Json {
+    let symbols = units::symbols(dimension).join("|");
+    let mut alone = if symbols.is_empty() { String::new() } else { format!("{symbols}|") };
+    if dimension.units().iter().any(|unit| unit.starts_with("1/")) {
+        alone.push_str(r"1\s*/.+|");
+    }
+    json!({"type": "string", "pattern": format!(r"{NUMBER}({alone}{COMPOUND})\s*$")})
+}
+
+/// The last part of a path, in words.
+fn title_of(path: &str) -> String {
+    path.rsplit('.').next().unwrap_or(path).replace('_', " ")
+}

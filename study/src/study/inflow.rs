@@ -1,0 +1,121 @@
+//! The gas that enters at a point: the windows of its strategy and the burst of residual gas, with
+//! warnings about what does not fit the run.
+
+use billow_solver::scene::InflowWindow;
+
+use crate::input::keys::{RESIDUAL_GAS, ResidualGas};
+use crate::input::parts::warn_of_end;
+use crate::input::plausible::Implausible;
+use crate::input::settings::Settings;
+use crate::input::source::{Source, shown};
+use crate::input::strategy::{Strategy, Window};
+use crate::input::value::brief_number;
+use crate::platform::error::InputError;
+
+/// What the inflow of a point follows from.
+pub(super) struct Inflow<'a> {
+    pub settings: &'a Settings,
+    /// Name of the strategy.
+    pub name: &'a str,
+    pub strategy: &'a Strategy,
+    /// End of the run, s.
+    pub end_time: f64,
+    pub source: &'a Source,
+}
+
+impl Inflow<'_> {
+    /// Inflow windows in order of time. Windows without inflow before the end are left out, and
+    /// windows that last beyond the end are cut there, so that equal physics gives an equal job.
+    pub fn windows(&self) -> Result<Vec<InflowWindow>, InputError> {
+        let temperature = self.settings.needed("gas.inflow_temperature", self.source)?;
+        let mut windows: Vec<InflowWindow> = self.burst(temperature)?.into_iter().collect();
+        for (index, window) in self.strategy.windows().enumerate() {
+            windows.push(self.window(index, &window, temperature)?);
+        }
+        for window in &mut windows {
+            window.to = window.to.min(self.end_time);
+        }
+        windows.retain(|window| window.mass_flow_rate > 0.0 && window.from < window.to);
+        windows.sort_by(|a, b| {
+            a.from
+                .total_cmp(&b.from)
+                .then(a.to.total_cmp(&b.to))
+                .then(a.mass_flow_rate.total_cmp(&b.mass_flow_rate))
+                .then(a.temperature.total_cmp(&b.temperature))
+        });
+        Ok(windows)
+    }
+
+    /// The burst of residual gas from release on.
+    fn burst(&self, temperature: f64) -> Result<Option<InflowWindow>, InputError> {
+        let Self { settings, source, end_time, .. } = self;
+        let residual = settings.word("gas.residual_gas", &RESIDUAL_GAS, source)?;
+        let mass = settings.needed("gas.residual_gas_mass", source)?;
+        let rate = settings.needed("gas.burst_rate", source)?;
+        if residual != ResidualGas::Burst || mass <= 0.0 {
+            return Ok(None);
+        }
+        let from = self.strategy.release_time();
+        let to = from + mass / rate;
+        if to > *end_time {
+            let problem = format!(
+                "enters at gas.burst_rate ({} kg/s) for {} s, beyond solver.end_time ({} s): only {} % enter",
+                brief_number(rate),
+                brief_number(mass / rate),
+                shown(*end_time),
+                brief_number(100.0 * rate * (end_time - from) / mass)
+            );
+            let next =
+                "check the unit of the mass; raise gas.burst_rate or solver.end_time, or take \
+                        gas.residual_gas \"stored\""
+                    .to_owned();
+            let value = format!("{} kg", shown(mass));
+            source.warn_point("gas.residual_gas_mass", &value, Implausible { problem, next });
+        }
+        Ok(Some(InflowWindow { from, to, mass_flow_rate: rate, temperature }))
+    }
+
+    /// One window of the strategy, with the study's values where it gives none.
+    fn window(
+        &self,
+        index: usize,
+        window: &Window,
+        temperature: f64,
+    ) -> Result<InflowWindow, InputError> {
+        let Self { source, end_time, .. } = *self;
+        let path = format!("strategies.{}.inflow[{index}]", self.name);
+        let from = window.from.unwrap_or(self.strategy.release_time());
+        let rate = match window.mass_flow_rate {
+            Some(rate) => rate,
+            None => self.settings.needed("gas.mass_flow_rate", source)?,
+        };
+        let to = match (window.to, window.mass) {
+            (Some(_), Some(mass)) => {
+                return Err(source.error(
+                    &format!("{path}.mass"),
+                    &shown(mass),
+                    "the window gives both its end and its mass",
+                    "`to` or `mass`",
+                ));
+            }
+            (Some(to), None) => to,
+            (None, Some(mass)) if rate > 0.0 => from + mass / rate,
+            (None, _) => end_time.max(from),
+        };
+        if to <= from && (to < from || window.to.is_some()) {
+            return Err(source.error(
+                &format!("{path}.to"),
+                &shown(to),
+                "the window ends before it begins",
+                format!("above its `from`, {} s", shown(from)),
+            ));
+        }
+        let end = match window.mass {
+            Some(mass) => ("mass", format!("{} kg, until {} s,", shown(mass), shown(to))),
+            None => ("to", format!("{} s", shown(to))),
+        };
+        warn_of_end(&path, [from, to], end, end_time, source);
+        let temperature = window.temperature.unwrap_or(temperature);
+        Ok(InflowWindow { from, to, mass_flow_rate: rate, temperature })
+    }
+}
