@@ -7,21 +7,50 @@ use billow_solver::scene::Support;
 use serde_json::{Map, json};
 
 use crate::input::json::Json;
-use crate::input::keys::{KEYS, Key, Named, STUDY, Table, pick, position};
+use crate::input::keys::{
+    KEYS, Key, Named, STRATEGY_KEYS, STUDY, Table, WINDOW_KEYS, pick, position,
+};
 use crate::input::object::{object, read};
 use crate::input::plausible::Implausible;
 use crate::input::source::{Source, shown};
-use crate::input::strategy::{Strategy, read_strategy};
+use crate::input::strategy::{self, Row};
 use crate::input::supports;
 use crate::input::value::{Value, json_value};
 use crate::platform::error::InputError;
 use crate::platform::nearest::{did_you_mean, nearest};
 
-/// The value of every key of a table, in its order; `Null` where absent.
+/// Where a strategy stands among the values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Strategy {
+    /// Position of the first value of [`STRATEGY_KEYS`]; the windows follow.
+    start: usize,
+    /// Number of its inflow windows.
+    windows: usize,
+}
+
+/// What an inflow window gives; the study or the strategy decides the rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Window {
+    /// Start, s.
+    pub from: Option<f64>,
+    /// End, s.
+    pub to: Option<f64>,
+    /// Mass let in, kg; it gives the end.
+    pub mass: Option<f64>,
+    /// Mass flow rate, kg/s.
+    pub mass_flow_rate: Option<f64>,
+    /// Temperature of the gas let in, K.
+    pub temperature: Option<f64>,
+}
+
+/// The value of every key of a table, in its order; `Null` where absent. In a study, the values of its
+/// strategies follow.
 #[derive(Debug, Clone)]
 pub(crate) struct Settings {
     table: &'static Table,
     values: Vec<Value>,
+    /// Paths and keys of the values beyond the table: those of strategies and their inflow windows.
+    rows: Vec<(String, &'static Key)>,
     /// The inflation strategies of a study, by name.
     pub strategies: BTreeMap<String, Strategy>,
     /// What holds the capsule of a study.
@@ -40,7 +69,8 @@ impl Settings {
     /// Every key at its default.
     pub fn new(table: &'static Table) -> Self {
         let values = table.keys.iter().map(|key| key.default_value()).collect();
-        Self { table, values, strategies: BTreeMap::new(), supports: Vec::new() }
+        let (rows, strategies, supports) = (Vec::new(), BTreeMap::new(), Vec::new());
+        Self { table, values, rows, strategies, supports }
     }
 
     /// Reads a study: the value of every key, its strategies and supports.
@@ -53,12 +83,13 @@ impl Settings {
         settings.read("", tree, source)?;
         settings.check_stepping(tree, source)?;
         settings.supports = supports::read(tree.get("supports"), source)?;
-        settings.strategies.insert("direct".to_owned(), Strategy::direct());
         if let Some(json) = tree.get("strategies") {
             for (name, value) in object(json, &STUDY, "strategies", source)? {
-                let strategy = read_strategy(name, value, source)?;
-                settings.strategies.insert(name.clone(), strategy);
+                settings.add_strategy(name, strategy::read(name, value, source)?);
             }
+        }
+        if !settings.strategies.contains_key("direct") {
+            settings.add_strategy("direct", strategy::direct());
         }
         settings.check_strategy(settings.strategy_name(), "strategy", source)?;
         Ok(settings)
@@ -80,7 +111,7 @@ impl Settings {
     /// Sets a key, and removes the values of the keys it excludes.
     pub fn set(&mut self, index: usize, value: Value) {
         self.values[index] = value;
-        for path in self.table.keys[index].excludes {
+        for path in self.key(index).excludes {
             if let Some(excluded) = self.table.index(path) {
                 self.values[excluded] = Value::Null;
             }
@@ -132,6 +163,61 @@ impl Settings {
         Ok(())
     }
 
+    fn add_strategy(&mut self, name: &str, rows: Vec<Row>) {
+        let windows = (rows.len() - STRATEGY_KEYS.len()) / WINDOW_KEYS.len();
+        let strategy = Strategy { start: self.values.len(), windows };
+        for (path, key, value) in rows {
+            self.rows.push((path, key));
+            self.values.push(value);
+        }
+        self.strategies.insert(name.to_owned(), strategy);
+    }
+
+    /// Time until which the lid holds the capsule, s.
+    pub fn release_time(&self, strategy: Strategy) -> f64 {
+        let index = strategy.start + const { position(STRATEGY_KEYS, "release_time") };
+        self.values[index].number().unwrap_or(0.0)
+    }
+
+    /// Gas inside from the start, kg.
+    pub fn preinflation_mass(&self, strategy: Strategy) -> f64 {
+        let index = strategy.start + const { position(STRATEGY_KEYS, "preinflation_mass") };
+        self.values[index].number().unwrap_or(0.0)
+    }
+
+    /// The inflow windows of a strategy.
+    pub fn windows(&self, strategy: Strategy) -> impl Iterator<Item = Window> {
+        let start = strategy.start + STRATEGY_KEYS.len();
+        let values = &self.values[start..start + strategy.windows * WINDOW_KEYS.len()];
+        values.chunks(WINDOW_KEYS.len()).map(|values| Window {
+            from: values[const { position(WINDOW_KEYS, "from") }].number(),
+            to: values[const { position(WINDOW_KEYS, "to") }].number(),
+            mass: values[const { position(WINDOW_KEYS, "mass") }].number(),
+            mass_flow_rate: values[const { position(WINDOW_KEYS, "mass_flow_rate") }].number(),
+            temperature: values[const { position(WINDOW_KEYS, "temperature") }].number(),
+        })
+    }
+
+    /// Position of the value that a dotted path names, or a last part that only one key has.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        let row = || self.rows.iter().position(|(path, _)| path == name);
+        self.table.find(name).or_else(|| Some(self.table.keys.len() + row()?))
+    }
+
+    /// The key of a value.
+    pub fn key(&self, index: usize) -> &'static Key {
+        let table = &self.table.keys;
+        table.get(index).copied().unwrap_or_else(|| self.rows[index - table.len()].1)
+    }
+
+    /// The shortest name of a value.
+    pub fn name(&self, index: usize) -> String {
+        match index.checked_sub(self.table.keys.len()) {
+            Some(row) => self.rows[row].0.clone(),
+            None => self.table.short_name(index).to_owned(),
+        }
+    }
+
     /// Name of the strategy.
     pub fn strategy_name(&self) -> &str {
         self.text("strategy").unwrap_or_default()
@@ -165,9 +251,21 @@ impl Settings {
             let member = key.path.split('.').fold(&mut json, |object, part| &mut object[part]);
             *member = json_value(value);
         }
-        let strategies = self.strategies.iter();
-        let strategies = strategies.map(|(name, strategy)| (name.clone(), strategy.to_json()));
-        json["strategies"] = strategies.collect::<Map<_, _>>().into();
+        let members = |keys: &[Key], start: usize| {
+            let given = keys.iter().zip(&self.values[start..]);
+            let given = given.filter(|(_, value)| **value != Value::Null);
+            given
+                .map(|(key, value)| (key.path.to_owned(), json_value(value)))
+                .collect::<Map<_, _>>()
+        };
+        for (name, Strategy { start, windows }) in &self.strategies {
+            let first = start + STRATEGY_KEYS.len();
+            let windows =
+                (0..*windows).map(|n| members(WINDOW_KEYS, first + n * WINDOW_KEYS.len()));
+            let windows: Vec<_> = windows.collect();
+            json["strategies"][name] = members(STRATEGY_KEYS, *start).into();
+            json["strategies"][name]["inflow"] = json!(windows);
+        }
         let supports = self
             .supports
             .iter()

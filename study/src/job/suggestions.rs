@@ -21,33 +21,10 @@ const MIN_DEPLOYMENT_ENERGY: f64 = 5e-3;
 /// Factor by which a smaller CFL number is smaller. Chosen: one such step cures most drift, at twice the steps.
 const CFL_FACTOR: f64 = 0.5;
 
-const SMALLER_STEP: &str =
-    "a step of half the length resolves film that gas throws outward within one step";
-const EXPLICIT: &str =
-    "explicit steps bear film that hits film; the implicit method finds no step there";
-const ADAPTIVE: &str =
-    "steps that follow their error are short where the fixed step is too long for the piston";
-const MORE_LOSS: &str = "more loss (film.loss_factor, film.numerical_damping); it damps the motion";
-const FINER_MESH: &str =
-    "a finer mesh (design.subdivisions); it moves film in more detail, and costs more";
 const STRETCH: &str = "less stretch: check film.youngs_modulus, film.thickness and the gas (gas.mass_flow_rate, \
                        gas.residual_gas_mass, solver.end_time); pressure times radius over E t is the strain";
-const GAS: &str = "more gas before solver.end_time: gas.mass_flow_rate and the inflow windows of the strategy; their \
-                   times count from the start of the run";
-const FILM_MODEL: &str = "solver.model film: it bears gas supplies that storeys does not";
-const START_VOLUME: &str =
-    "a volume for the gas at the start: design.stowed_height, gas.residual_gas_mass";
-const APART: &str =
-    "layers farther apart at the start: design.stowed_height; film in one plane has no side";
-const STEP_LIMIT: &str = "more steps: solver.step_limit";
-const JOB_STEPS: &str = "more steps: job_limits.steps; the job resumes from its checkpoint";
-const WALL_TIME: &str =
-    "more time: job_limits.wall_time; the job resumes from its checkpoint, if it has one";
-const MEMORY: &str =
-    "a coarser mesh (design.subdivisions), more memory, or a larger job_limits.memory";
-const LESS_DAMPING: &str = "less numerical damping: a smaller film.numerical_damping or solver.cfl";
-const LESS_DAMPED_METHOD: &str =
-    "solver.integrator explicit: it takes less energy than this integrator";
+const FINER_MESH: &str =
+    "a finer mesh (design.subdivisions); it moves film in more detail, and costs more";
 
 /// Something to try.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -89,7 +66,8 @@ impl Failure<'_> {
         let integrator = |kind| format!("solver.integrator={}", integrators::entry(kind).name);
         let (set, text) = match (self.solver.model, self.solver.integrator, self.solver.stepping) {
             (ModelKind::Film, IntegratorKind::Implicit, _) => {
-                (integrator(IntegratorKind::Hybrid), EXPLICIT)
+                let text = "explicit steps bear film that hits film; the implicit method finds no step there";
+                (integrator(IntegratorKind::Hybrid), text)
             }
             (ModelKind::Film, _, Stepping::Stable(cfl)) => {
                 // The gas takes its step in closed form: no smaller step makes its balance better.
@@ -98,10 +76,12 @@ impl Failure<'_> {
                 if !is_drift && kind != FailureKind::Unstable {
                     return None;
                 }
-                (format!("solver.cfl={}", short_number(CFL_FACTOR * cfl)), SMALLER_STEP)
+                let text = "a step of half the length resolves film that gas throws outward within one step";
+                (format!("solver.cfl={}", short_number(CFL_FACTOR * cfl)), text)
             }
             (ModelKind::Piston, _, Stepping::Fixed(_)) => {
-                (format!("solver.stepping.adaptive={}", short_number(DEFAULT_TOLERANCE)), ADAPTIVE)
+                let text = "steps that follow their error are short where the fixed step is too long for the piston";
+                (format!("solver.stepping.adaptive={}", short_number(DEFAULT_TOLERANCE)), text)
             }
             // A smaller step of storeys fails alike: the model itself does not bear such gas.
             _ => return None,
@@ -113,30 +93,44 @@ impl Failure<'_> {
     fn decisions(&self) -> Vec<&'static str> {
         let is_film = self.solver.model == ModelKind::Film;
         let is_damped = *self.cells.get(ColumnId::NumericallyDamped) == Value::Bool(true);
+        let is_implicit = is_film && self.solver.integrator == IntegratorKind::Implicit;
         match self.cells.status() {
-            _ if is_without_motion(self.cells) => vec![GAS],
-            Status::Done
-                if is_damped && is_film && self.solver.integrator == IntegratorKind::Implicit =>
-            {
-                vec![LESS_DAMPED_METHOD, FINER_MESH]
-            }
-            Status::Done if is_damped => vec![LESS_DAMPING, FINER_MESH],
+            _ if is_without_motion(self.cells) => vec![
+                "more gas before solver.end_time: gas.mass_flow_rate and the inflow windows of the strategy; their \
+                 times count from the start of the run",
+            ],
+            Status::Done if is_damped && is_implicit => vec![
+                "solver.integrator explicit: it takes less energy than this integrator",
+                FINER_MESH,
+            ],
+            Status::Done if is_damped => vec![
+                "less numerical damping: a smaller film.numerical_damping or solver.cfl",
+                FINER_MESH,
+            ],
             Status::Failed(FailureKind::Overstretched) => vec![STRETCH],
             Status::Failed(FailureKind::StepLimit) if self.used_all_steps() => {
-                vec![if self.steps().is_some() { STEP_LIMIT } else { JOB_STEPS }]
+                // The next step says how a job goes on that a limit of jobs ended.
+                self.steps().map(|_| "more steps: solver.step_limit").into_iter().collect()
             }
-            Status::Failed(_) if self.solver.model == ModelKind::Storeys => vec![FILM_MODEL],
+            Status::Failed(_) if self.solver.model == ModelKind::Storeys => {
+                vec!["solver.model film: it bears gas supplies that storeys does not"]
+            }
             // It was stretched far beyond its material model, and a smaller step shows it as overstretched.
             Status::Failed(FailureKind::Unstable) if self.ended_by(AuditKind::Stretch) => {
                 vec![STRETCH]
             }
-            Status::Failed(FailureKind::Unstable | FailureKind::EnergyDrift) if is_film => {
-                vec![MORE_LOSS, FINER_MESH]
+            Status::Failed(FailureKind::Unstable | FailureKind::EnergyDrift) if is_film => vec![
+                "more loss (film.loss_factor, film.numerical_damping); it damps the motion",
+                FINER_MESH,
+            ],
+            Status::Failed(FailureKind::InvertedVolume) if is_film => {
+                vec![
+                    "a volume for the gas at the start: design.stowed_height, gas.residual_gas_mass",
+                ]
             }
-            Status::Failed(FailureKind::InvertedVolume) if is_film => vec![START_VOLUME],
-            Status::Failed(FailureKind::Interpenetrated) if is_film => vec![APART],
-            Status::Timeout => vec![WALL_TIME],
-            Status::OutOfMemory => vec![MEMORY],
+            Status::Failed(FailureKind::Interpenetrated) if is_film => vec![
+                "layers farther apart at the start: design.stowed_height; film in one plane has no side",
+            ],
             _ => Vec::new(),
         }
     }

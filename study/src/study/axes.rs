@@ -61,6 +61,6 @@ impl Study {
     /// Meaning of a varied parameter; empty for an unknown one.
     pub fn meaning(&self, parameter: &str) -> &'static str {
         let column = self.grid.columns.iter().find(|column| column.name == parameter);
-        column.map_or("", |column| column.target.key().doc)
+        column.map_or("", |column| column.key.doc)
     }
 }

@@ -44,7 +44,7 @@ pub(super) fn points(
     for values in &grid.points {
         let mut point = settings.clone();
         for (column, value) in values {
-            grid.columns[*column].target.set(&mut point, value.clone());
+            point.set(grid.columns[*column].index, value.clone());
         }
         // A point that does not give the key of the search is searched as those of the product.
         let gives = |column: usize| values.iter().any(|(given, _)| *given == column);
@@ -78,7 +78,7 @@ pub(super) fn points_at(
     expansion.searched = searched;
     let mut point = settings.clone();
     for (column, value) in grid.columns.iter().zip(values) {
-        column.target.set(&mut point, value.clone());
+        point.set(column.index, value.clone());
     }
     // The filter does not concern single points.
     let filter = grid.filter.as_ref().filter(|_| searched == Searched::InProduct);
@@ -94,7 +94,7 @@ fn set_axes(point: &mut Settings, grid: &Grid, axes: &[&Axis], number: usize) {
         let row = &rows[rest % rows.len()];
         rest /= rows.len();
         for (column, value) in columns.iter().zip(row) {
-            grid.columns[*column].target.set(point, value.clone());
+            point.set(grid.columns[*column].index, value.clone());
         }
     }
 }
@@ -244,7 +244,7 @@ impl<'a> Expansion<'a> {
     /// The varied parameters of a point.
     fn parameters(&self, point: &Settings) -> Parameters {
         let columns = self.grid.columns.iter();
-        columns.map(|column| (column.name.clone(), column.target.value(point))).collect()
+        columns.map(|column| (column.name.clone(), point.at(column.index).clone())).collect()
     }
 
     /// The error, with the point it belongs to.

@@ -2,7 +2,7 @@
 
 use billow_solver::geometry::fold::{FoldError, FoldPattern};
 
-use super::target::{Column, Target};
+use super::column::Column;
 use crate::input::expression::{self, Expression, ExpressionError, Type, Variable};
 use crate::input::keys::{self, KEYS, KeyKind, position};
 use crate::input::settings::Settings;
@@ -66,7 +66,8 @@ enum Named {
     Feasible,
     /// Position in [`SOLVED`].
     Solved(usize),
-    Key(Target),
+    /// Position in the settings.
+    Value(usize),
 }
 
 /// A condition on the points of a study.
@@ -94,13 +95,13 @@ impl Filter {
         }));
         let keys = KEYS.iter().enumerate().filter(|(_, key)| key.varies());
         let keys = keys.flat_map(|(index, key)| {
-            [keys::short_name(index), key.path].map(|name| (name.to_owned(), Target::Key(index)))
+            [keys::short_name(index), key.path].map(|name| (name.to_owned(), index))
         });
-        let strategies = columns.iter().filter(|column| !matches!(column.target, Target::Key(_)));
-        let strategies = strategies.map(|column| (column.name.clone(), column.target.clone()));
-        for (name, target) in keys.chain(strategies) {
+        let strategies = columns.iter().filter(|column| column.index >= KEYS.len());
+        let strategies = strategies.map(|column| (column.name.clone(), column.index));
+        for (name, index) in keys.chain(strategies) {
             if !variables.iter().any(|(known, ..)| *known == name) {
-                variables.push((name, kind(&target, settings), Named::Key(target)));
+                variables.push((name, kind(index, settings), Named::Value(index)));
             }
         }
         let used = expression::names(text);
@@ -129,20 +130,20 @@ impl Filter {
             (Some(Named::Solved(index)), Err(_)) => {
                 SOLVED[*index].key.map_or(Value::Null, |key| point.at(key).clone())
             }
-            (Some(Named::Key(target)), _) => target.value(point),
+            (Some(Named::Value(index)), _) => point.at(*index).clone(),
         };
         self.condition.holds(&self.named.iter().map(value).collect::<Vec<_>>())
     }
 }
 
-fn kind(target: &Target, settings: &Settings) -> Type {
-    match target.key().kind {
+fn kind(index: usize, settings: &Settings) -> Type {
+    match settings.key(index).kind {
         KeyKind::Quantity(quantity) => Type::Quantity(quantity.dimension, quantity.words),
         KeyKind::Integer(..) => Type::Quantity(Dimension::Number, &[]),
         KeyKind::Choice(words) => {
             Type::Text(Some(words.iter().map(|word| word.name.to_owned()).collect()))
         }
-        KeyKind::Text if *target == Target::Key(STRATEGY) => {
+        KeyKind::Text if index == STRATEGY => {
             Type::Text(Some(settings.strategies.keys().cloned().collect()))
         }
         // A study has no key that is a flag or a vector.

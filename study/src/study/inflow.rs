@@ -6,9 +6,8 @@ use billow_solver::scene::InflowWindow;
 use crate::input::keys::{RESIDUAL_GAS, ResidualGas};
 use crate::input::parts::warn_of_end;
 use crate::input::plausible::Implausible;
-use crate::input::settings::Settings;
+use crate::input::settings::{Settings, Strategy, Window};
 use crate::input::source::{Source, shown};
-use crate::input::strategy::{Strategy, Window};
 use crate::input::value::brief_number;
 use crate::platform::error::InputError;
 
@@ -17,7 +16,7 @@ pub(super) struct Inflow<'a> {
     pub settings: &'a Settings,
     /// Name of the strategy.
     pub name: &'a str,
-    pub strategy: &'a Strategy,
+    pub strategy: Strategy,
     /// End of the run, s.
     pub end_time: f64,
     pub source: &'a Source,
@@ -29,7 +28,7 @@ impl Inflow<'_> {
     pub fn windows(&self) -> Result<Vec<InflowWindow>, InputError> {
         let temperature = self.settings.needed("gas.inflow_temperature", self.source)?;
         let mut windows: Vec<InflowWindow> = self.burst(temperature)?.into_iter().collect();
-        for (index, window) in self.strategy.windows().enumerate() {
+        for (index, window) in self.settings.windows(self.strategy).enumerate() {
             windows.push(self.window(index, &window, temperature)?);
         }
         for window in &mut windows {
@@ -55,7 +54,7 @@ impl Inflow<'_> {
         if residual != ResidualGas::Burst || mass <= 0.0 {
             return Ok(None);
         }
-        let from = self.strategy.release_time();
+        let from = self.settings.release_time(self.strategy);
         let to = from + mass / rate;
         if to > *end_time {
             let problem = format!(
@@ -84,7 +83,7 @@ impl Inflow<'_> {
     ) -> Result<InflowWindow, InputError> {
         let Self { source, end_time, .. } = *self;
         let path = format!("strategies.{}.inflow[{index}]", self.name);
-        let from = window.from.unwrap_or(self.strategy.release_time());
+        let from = window.from.unwrap_or(self.settings.release_time(self.strategy));
         let rate = match window.mass_flow_rate {
             Some(rate) => rate,
             None => self.settings.needed("gas.mass_flow_rate", source)?,

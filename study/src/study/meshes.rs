@@ -5,8 +5,8 @@
 
 use billow_solver::scene::ModelKind;
 
+use super::column::Column;
 use super::grid::{Axis, AxisKind, Context, Grid};
-use super::target::{Column, Target};
 use crate::accuracy::MeshErrors;
 use crate::input::json::Json;
 use crate::input::keys::{self, KEYS, position, short_name};
@@ -54,8 +54,9 @@ impl Grid {
         if !COUNT.contains(&meshes.len()) || !meshes.is_sorted_by(|a, b| a < b) {
             return Err(refuse("is not two or three meshes in ascending order".to_owned()));
         }
-        let target = Target::Key(SUBDIVISIONS);
-        if self.columns.iter().any(|column| column.target == target) {
+        let name = short_name(SUBDIVISIONS).to_owned();
+        let column = Column { name, key: &KEYS[SUBDIVISIONS], index: SUBDIVISIONS };
+        if self.columns.contains(&column) {
             return Err(refuse(
                 "varies subdivisions, which another axis varies already".to_owned(),
             ));
@@ -64,7 +65,7 @@ impl Grid {
             let problem = "extrapolates from several meshes, and a search judges single runs";
             return Err(refuse(problem.to_owned()));
         }
-        self.columns.push(Column { name: short_name(SUBDIVISIONS).to_owned(), target });
+        self.columns.push(column);
         let rows = meshes.iter().map(|n| vec![Value::Integer(i64::from(*n))]).collect();
         let columns = vec![self.columns.len() - 1];
         self.axes.push(Axis { columns, rows, kind: AxisKind::Meshes });

@@ -8,6 +8,7 @@
 
 mod accuracy;
 mod axes;
+mod column;
 mod expand;
 mod filter;
 pub mod finished;
@@ -23,7 +24,6 @@ mod replicates;
 mod resolve;
 mod result_limits;
 mod search;
-mod target;
 mod units;
 
 use std::collections::BTreeSet;
@@ -154,7 +154,7 @@ impl Study {
         let context =
             Context { settings: &settings, limits: &result_limits, source: &source, max_points };
         let mut grid = Grid::read(&tree, context)?;
-        grid::refuse_varied(&grid, &source)?;
+        grid.refuse_varied(&source)?;
         let units = units::read(&tree, &settings, &source)?;
         let mut accuracy = Accuracy::read(tree.get(ACCURACY), &source)?;
         let (mut points, mut filtered) = expand::points(&settings, &grid, &source, max_points)?;

@@ -1,9 +1,9 @@
 //! The parameters of a study: their names, values and units.
 
 use super::Study;
-use super::target::{self, Section};
+use super::column::{self, Section};
 use crate::input::json::Json;
-use crate::input::keys::{self, KEYS, Key};
+use crate::input::keys::Key;
 use crate::input::source::Source;
 use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
@@ -37,7 +37,7 @@ impl Study {
 
     /// Dotted paths of the varied parameters, in the same order.
     pub fn parameter_paths(&self) -> impl Iterator<Item = &'static str> {
-        self.grid.columns.iter().map(|column| column.target.key().path)
+        self.grid.columns.iter().map(|column| column.key.path)
     }
 
     /// Varied parameters on the same axis as this one, which change together with it.
@@ -59,7 +59,7 @@ impl Study {
     /// value.
     pub fn parameter_value(&self, parameter: &str, text: &str) -> Option<Value> {
         let column = self.grid.columns.iter().find(|column| column.name == parameter)?;
-        let key = column.target.key();
+        let key = column.key;
         let text = text.trim();
         let number = || {
             let whole = text.parse::<i64>().ok().map(Json::Integer);
@@ -75,7 +75,7 @@ impl Study {
     /// SI unit of a varied parameter: "1" for a pure number, empty for a word.
     pub fn unit(&self, parameter: &str) -> &'static str {
         let column = self.grid.columns.iter().find(|column| column.name == parameter);
-        column.map_or("", |column| column.target.key().unit())
+        column.map_or("", |column| column.key.unit())
     }
 
     /// The units in which its parameters and measures are shown: those that the file writes, or asks for
@@ -92,18 +92,12 @@ impl Study {
         parameters.iter().map(text).collect::<Vec<_>>().join(" ")
     }
 
-    /// Whether a name may be that of a key, as `film.thickness`, `thickness` or one of a strategy.
-    pub fn may_be_key(name: &str) -> bool {
-        keys::find(name).is_some_and(|index| KEYS[index].varies())
-            || name.starts_with("strategies.")
-    }
-
     /// A key by its path or its last part; `None` for another name.
     pub fn key(&self, name: &str) -> Option<StudyKey> {
         let source = Source::new("");
         let column =
-            target::find(name, name, &Json::Null, &self.settings, Section::Grid, &source).ok()?;
-        let (key, value) = (column.target.key(), column.target.value(&self.settings));
+            column::find(name, name, &Json::Null, &self.settings, Section::Grid, &source).ok()?;
+        let (key, value) = (column.key, self.settings.at(column.index).clone());
         Some(StudyKey { name: column.name, key, value })
     }
 }

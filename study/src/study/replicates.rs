@@ -4,8 +4,8 @@
 //! charts show their median, range and proportions.
 
 use super::REPLICATES;
+use super::column::Section;
 use super::grid::{Axis, AxisKind, Context, Grid};
-use super::target::{Section, Target};
 use crate::input::json::Json;
 use crate::input::keys::{KEYS, position};
 use crate::platform::error::InputError;
@@ -42,7 +42,7 @@ impl Grid {
             let path = format!("{REPLICATES}.{name}");
             let column = self.column(name, &path, value, Section::Replicates, context)?;
             let values = match value {
-                Json::Integer(count) if self.columns[column].target == Target::Key(SEED) => {
+                Json::Integer(count) if self.columns[column].index == SEED => {
                     &seeds(*count, &path, value, context)?
                 }
                 Json::List(_) | Json::Object(_) => value,

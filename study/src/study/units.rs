@@ -2,7 +2,7 @@
 //! file writes for a key, first under `grid`, then in its section; for a measure those of its limit.
 
 use super::accuracy::ACCURACY;
-use super::target::{self, Section};
+use super::column::{self, Section};
 use super::{JOB_LIMITS, LIMITS, REPLICATES, UNITS};
 use crate::input::json::Json;
 use crate::input::keys::{self, KEYS, KeyKind, STUDY};
@@ -47,7 +47,7 @@ pub(super) fn read(
     }
     for section in ["grid", REPLICATES] {
         written_in_grid(tree.get(section), &mut |name, value| {
-            if let Ok(column) = target::find(name, section, value, settings, Section::Grid, source)
+            if let Ok(column) = column::find(name, section, value, settings, Section::Grid, source)
             {
                 suggest(&mut units, &column.name, value);
             }
@@ -73,8 +73,8 @@ pub(super) fn quantity(
     settings: &Settings,
     source: &Source,
 ) -> Result<(String, &'static str), InputError> {
-    if let Ok(column) = target::find(name, path, value, settings, Section::Grid, source) {
-        return Ok((column.name, column.target.key().unit()));
+    if let Ok(column) = column::find(name, path, value, settings, Section::Grid, source) {
+        return Ok((column.name, column.key.unit()));
     }
     let current = name;
     if let Some(column) = COLUMNS.iter().find(|column| column.name == current) {

@@ -277,7 +277,7 @@ fn check_film(
 
 /// The scene as stored, and the hash of everything that decides its results.
 fn identity(tree: &Json, reader: &Reader) -> (serde_json::Value, String) {
-    let input = json!({"scene": to_value(tree), "files": reader.hashes});
+    let input = json!({"scene": tree, "files": reader.hashes});
     let identity = json!({"physics_version": PHYSICS_VERSION, "input": input});
     let hash = bytes_hash(canonical_json(&identity).as_bytes());
     (input, hash)
@@ -321,21 +321,5 @@ fn scene_error(error: SceneError, source: &Source) -> InputError {
             source.error(&key, "", problem, allowed)
         }
         SceneError::Fold(error) => source.error("design", "", error.to_string(), ""),
-    }
-}
-
-/// The tree as JSON.
-fn to_value(json: &Json) -> serde_json::Value {
-    match json {
-        Json::Null => serde_json::Value::Null,
-        Json::Bool(value) => (*value).into(),
-        Json::Integer(value) => (*value).into(),
-        Json::Number(value) => (*value).into(),
-        Json::Text(value) => value.as_str().into(),
-        Json::List(items) => items.iter().map(to_value).collect::<Vec<_>>().into(),
-        Json::Object(members) => {
-            let members = members.iter().map(|(key, value)| (key.clone(), to_value(value)));
-            members.collect::<serde_json::Map<_, _>>().into()
-        }
     }
 }

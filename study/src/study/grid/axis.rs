@@ -8,9 +8,9 @@ use crate::input::source::Source;
 use crate::input::value::Value;
 use crate::job::proportion::Proportion;
 use crate::platform::error::InputError;
+use crate::study::column::{self, Column, Section};
 use crate::study::range;
 use crate::study::search::{Search, is_search};
-use crate::study::target::{self, Section, Target};
 
 /// What an axis must look like, for errors.
 const AXIS: &str = "a list of values; {\"from\", \"to\", and \"steps\" or \"step\", \"spacing\"}; or \
@@ -88,7 +88,7 @@ impl Grid {
             let allowed = "one search in a study; the other axes as lists";
             return Err(source.error(path, &json.brief(), "is a second search", allowed));
         }
-        let key = self.columns[column].target.key();
+        let key = self.columns[column].key;
         let search = Search::read(json, path, (column, key), limits, source)?;
         let rows = search.scan().into_iter().map(|number| vec![search.value(number)]).collect();
         self.axes.push(Axis { columns: vec![column], rows, kind: AxisKind::Search });
@@ -122,8 +122,8 @@ impl Grid {
         context: Context<'_>,
     ) -> Result<usize, InputError> {
         let Context { settings, source, .. } = context;
-        let column = target::find(name, path, value, settings, section, source)?;
-        if self.columns.iter().any(|known| known.target == column.target) {
+        let column = column::find(name, path, value, settings, section, source)?;
+        if self.columns.contains(&column) {
             let problem = format!("varies {}, which another axis varies already", column.name);
             return Err(source.error(path, &value.brief(), problem, "each key once"));
         }
@@ -140,7 +140,7 @@ impl Grid {
         context: Context<'_>,
     ) -> Result<Vec<Value>, InputError> {
         let Context { source, max_points, .. } = context;
-        let target = &self.columns[column].target;
+        let column = &self.columns[column];
         let items = match json {
             Json::List(items) => items,
             Json::Object(_) => {
@@ -153,8 +153,7 @@ impl Grid {
                         "an axis of its key alone",
                     ));
                 }
-                let key = target.key();
-                return range::values(key, json, path, source, max_points);
+                return range::values(column.key, json, path, source, max_points);
             }
             other => {
                 let mut error = source.error(
@@ -163,8 +162,8 @@ impl Grid {
                     format!("is {}, not an axis", other.kind()),
                     AXIS,
                 );
-                if let Target::Key(key) = target {
-                    error.hint = format!("a single value belongs to {}", KEYS[*key].path);
+                if let Some(key) = KEYS.get(column.index) {
+                    error.hint = format!("a single value belongs to {}", key.path);
                 }
                 return Err(error);
             }
@@ -175,22 +174,21 @@ impl Grid {
         items
             .iter()
             .enumerate()
-            .map(|(number, item)| value(target, item, &format!("{path}[{number}]"), context))
+            .map(|(number, item)| value(column, item, &format!("{path}[{number}]"), context))
             .collect()
     }
 }
 
 /// Reads one value of a column.
 pub(super) fn value(
-    target: &Target,
+    column: &Column,
     json: &Json,
     path: &str,
     context: Context<'_>,
 ) -> Result<Value, InputError> {
     let Context { settings, source, .. } = context;
-    let key = target.key();
-    let value = read(key, json, path, source)?;
-    if let (Target::Key(STRATEGY), Value::Text(name)) = (target, &value) {
+    let value = read(column.key, json, path, source)?;
+    if let (STRATEGY, Value::Text(name)) = (column.index, &value) {
         settings.check_strategy(name, path, source)?;
     }
     Ok(value)

@@ -2,12 +2,11 @@
 
 mod axis;
 mod points;
-mod varied;
 
 use super::REPLICATES;
+use super::column::{Column, Section};
 use super::filter::Filter;
 use super::search::{Search, is_search};
-use super::target::{Column, Section};
 use crate::input::json::Json;
 use crate::input::keys::STUDY;
 use crate::input::object::{list, object};
@@ -16,7 +15,6 @@ use crate::input::source::Source;
 use crate::input::value::{Value, json_value};
 use crate::job::result_limit::ResultLimit;
 use crate::platform::error::InputError;
-pub(super) use varied::refuse_varied;
 
 /// What the values of a grid are read with.
 #[derive(Clone, Copy)]
@@ -122,6 +120,30 @@ impl Grid {
             grid.read_filter(filter, context)?;
         }
         Ok(grid)
+    }
+
+    /// Refuses an override of a key that the grid varies together with others, or that repeats points: it
+    /// has no effect.
+    pub fn refuse_varied(&self, source: &Source) -> Result<(), InputError> {
+        for axis in &self.axes {
+            let name = |column: &usize| &self.columns[*column].name;
+            let is_set = |column: &&usize| {
+                let path = self.columns[**column].key.path;
+                source.sets.iter().any(|(set, _)| set == path)
+            };
+            let Some(column) = axis.columns.iter().find(is_set) else { continue };
+            let (by, allowed) = match axis.kind {
+                AxisKind::Meshes => ("solver.meshes", "solver.meshes=[4, 8]".to_owned()),
+                AxisKind::Replicates => (REPLICATES, format!("replicates.{}=[…]", name(column))),
+                AxisKind::Values | AxisKind::Search => {
+                    ("grid.zip", format!("grid.zip=[{{\"{}\": […], …}}]", name(column)))
+                }
+            };
+            let problem = format!("varies by {by}, so the override has no effect");
+            let path = self.columns[*column].key.path;
+            return Err(source.error(path, "", problem, format!("--set '{allowed}'")));
+        }
+        Ok(())
     }
 
     /// Number of single points, without replicates.

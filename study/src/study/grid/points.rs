@@ -4,11 +4,12 @@ use super::axis::value;
 use super::{Context, Grid};
 use crate::input::expression;
 use crate::input::json::Json;
+use crate::input::keys;
 use crate::input::object::list;
 use crate::input::value::Value;
 use crate::platform::error::InputError;
+use crate::study::column::{self, Section};
 use crate::study::filter::Filter;
-use crate::study::target::{self, Section};
 
 impl Grid {
     /// Reads the single points.
@@ -28,9 +29,9 @@ impl Grid {
             let mut values: Vec<(usize, Value)> = Vec::new();
             for (name, json) in members {
                 let path = format!("{path}.{name}");
-                let found = target::find(name, &path, json, settings, Section::Grid, source)?;
-                let value = value(&found.target, json, &path, context)?;
-                let known = self.columns.iter().position(|known| known.target == found.target);
+                let found = column::find(name, &path, json, settings, Section::Grid, source)?;
+                let value = value(&found, json, &path, context)?;
+                let known = self.columns.iter().position(|known| *known == found);
                 let column = known.unwrap_or_else(|| {
                     self.columns.push(found);
                     self.columns.len() - 1
@@ -86,7 +87,7 @@ impl Grid {
     /// The first replicate that a condition names.
     fn replicate_in(&self, condition: &str) -> Option<String> {
         expression::names(condition).into_iter().find(|name| {
-            let replicate = |column: &usize| self.columns[*column].target.has_name(name);
+            let replicate = |column: &usize| keys::find(name) == Some(self.columns[*column].index);
             self.replicates().any(|axis| axis.columns.iter().any(replicate))
         })
     }
