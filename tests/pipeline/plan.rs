@@ -296,7 +296,7 @@ fn overrides_come_before_expansion() {
     assert_eq!(column(&generation, "M"), integers(&[2, 4]));
     let zipped = with_grid(json!({"zip": [{"N": [5, 6], "M": [3, 4]}]}));
     let error = try_study(&zipped, &["N=7"]).unwrap_err().to_string();
-    assert!(error.contains("varies this key together with others (zip)"), "{error}");
+    assert!(error.contains("varies by grid.zip"), "{error}");
 }
 
 #[test]

@@ -175,6 +175,6 @@ fn keys_without_effect_are_noted() {
     let folder = scene_folder(&scene, &[]);
     let summary = done(folder.path(), &["scene.json", "-q"], "");
     let notes = summary["notes"].to_string();
-    assert!(notes.contains("the node nearest to [200.0, 0.0, 500.0] m is"), "{notes}");
+    assert!(notes.contains("the one nearest to [200.0, 0.0, 500.0] m is"), "{notes}");
     assert!(notes.contains("release_time has no effect: the film stays packed"), "{notes}");
 }

@@ -34,11 +34,7 @@ impl<'a> Object<'a> {
     ) -> Result<Self, InputError> {
         let names: Vec<&str> =
             keys.iter().map(|key| key.path).chain(more.iter().copied()).collect();
-        let Json::Object(members) = json else {
-            let problem = format!("is {}, not an object", json.kind());
-            return Err(source.error(path, &json.brief(), problem, names.join(", ")));
-        };
-        for (name, value) in members {
+        for (name, value) in members(json, path, source, &names.join(", "))? {
             if !names.contains(&name.as_str()) {
                 let near = or_nearest(name, names.iter().copied());
                 let problem = format!("is not a key of {what}{near}");
@@ -222,24 +218,32 @@ pub(crate) fn read_number(
     }
 }
 
-/// The members of an object.
+/// The members of an object of a table.
 pub(crate) fn object<'a>(
     json: &'a Json,
     table: &Table,
     path: &str,
     source: &Source,
 ) -> Result<&'a [(String, Json)], InputError> {
+    match table.children(path) {
+        names if names.is_empty() => members(json, path, source, "an object"),
+        names => members(json, path, source, &names.join(", ")),
+    }
+}
+
+/// The members of an object.
+pub(crate) fn members<'a>(
+    json: &'a Json,
+    path: &str,
+    source: &Source,
+    allowed: &str,
+) -> Result<&'a [(String, Json)], InputError> {
     match json {
         Json::Object(members) => Ok(members),
-        other => Err(source.error(
-            path,
-            &other.brief(),
-            format!("is {}, not an object", other.kind()),
-            match table.children(path) {
-                names if names.is_empty() => "an object".to_owned(),
-                names => names.join(", "),
-            },
-        )),
+        other => {
+            let problem = format!("is {}, not an object", other.kind());
+            Err(source.error(path, &other.brief(), problem, allowed))
+        }
     }
 }
 

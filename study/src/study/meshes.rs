@@ -3,6 +3,8 @@
 //! The meshes are an axis that varies fastest, as replicates do. They must be meshes of the table of mesh errors,
 //! which has the weights of the extrapolation.
 
+use std::ops::RangeInclusive;
+
 use billow_solver::scene::ModelKind;
 
 use super::column::Column;
@@ -10,6 +12,7 @@ use super::grid::{Axis, AxisKind, Context, Grid};
 use crate::accuracy::MeshErrors;
 use crate::input::json::Json;
 use crate::input::keys::{self, KEYS, position, short_name};
+use crate::input::object::list;
 use crate::input::source::Source;
 use crate::input::value::Value;
 use crate::job::point::Point;
@@ -20,7 +23,7 @@ const MESHES: &str = "solver.meshes";
 /// The key that the meshes vary.
 const SUBDIVISIONS: usize = position(KEYS, "design.subdivisions");
 /// Number of meshes.
-const COUNT: std::ops::RangeInclusive<usize> = 2..=3;
+const COUNT: RangeInclusive<usize> = 2..=3;
 
 impl Grid {
     /// Reads the meshes, as the last axis.
@@ -34,36 +37,24 @@ impl Grid {
     ) -> Result<(), InputError> {
         let Some(json) = json else { return Ok(()) };
         let source = context.source;
-        let known = MeshErrors::shipped().meshes();
-        let names: Vec<String> = known.iter().map(ToString::to_string).collect();
-        let allowed =
-            format!("two or three of {}, the coarsest first, as in [4, 8]", names.join(", "));
-        let refuse =
-            |problem: String| source.error(MESHES, &json.brief(), problem, allowed.clone());
-        let Json::List(items) = json else {
-            return Err(refuse(format!("is {}, not a list of meshes", json.kind())));
+        let meshes = read_list(json, MESHES, COUNT, source)?;
+        let refuse = |problem: &str| {
+            source.error(
+                MESHES,
+                &json.brief(),
+                problem,
+                "a study in which nothing else varies the mesh",
+            )
         };
-        let whole = |item: &Json| match item {
-            Json::Integer(n) => u32::try_from(*n).ok().filter(|n| known.contains(n)),
-            _ => None,
-        };
-        let meshes: Vec<u32> = items.iter().filter_map(whole).collect();
-        if meshes.len() < items.len() {
-            return Err(refuse("has a mesh that the table of mesh errors has not".to_owned()));
-        }
-        if !COUNT.contains(&meshes.len()) || !meshes.is_sorted_by(|a, b| a < b) {
-            return Err(refuse("is not two or three meshes in ascending order".to_owned()));
-        }
         let name = short_name(SUBDIVISIONS).to_owned();
         let column = Column { name, key: &KEYS[SUBDIVISIONS], index: SUBDIVISIONS };
         if self.columns.contains(&column) {
-            return Err(refuse(
-                "varies subdivisions, which another axis varies already".to_owned(),
-            ));
+            return Err(refuse("varies subdivisions, which another axis varies already"));
         }
         if self.search.is_some() {
-            let problem = "extrapolates from several meshes, and a search judges single runs";
-            return Err(refuse(problem.to_owned()));
+            return Err(refuse(
+                "extrapolates from several meshes, and a search judges single runs",
+            ));
         }
         self.columns.push(column);
         let rows = meshes.iter().map(|n| vec![Value::Integer(i64::from(*n))]).collect();
@@ -83,6 +74,41 @@ impl Grid {
             })
             .collect()
     }
+}
+
+/// Reads a list of meshes of the table of mesh errors.
+///
+/// # Errors
+/// A mesh that the table does not have; meshes that are too many, too few or not in ascending order.
+pub(super) fn read_list(
+    json: &Json,
+    path: &str,
+    count: RangeInclusive<usize>,
+    source: &Source,
+) -> Result<Vec<u32>, InputError> {
+    let known = MeshErrors::shipped().meshes();
+    let names = known.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+    let allowed = format!(
+        "{} to {} of {names}, the coarsest first, as in [4, 8]",
+        count.start(),
+        count.end()
+    );
+    let items = list(json, path, source, &allowed)?;
+    let whole = |item: &Json| match item {
+        Json::Integer(n) => u32::try_from(*n).ok().filter(|n| known.contains(n)),
+        _ => None,
+    };
+    let meshes: Option<Vec<u32>> = items.iter().map(whole).collect();
+    let problem = match meshes {
+        None => "has a mesh that the table of mesh errors has not".to_owned(),
+        Some(meshes) if count.contains(&meshes.len()) && meshes.is_sorted_by(|a, b| a < b) => {
+            return Ok(meshes);
+        }
+        Some(_) => {
+            format!("is not {} to {} meshes in ascending order", count.start(), count.end())
+        }
+    };
+    Err(source.error(path, &json.brief(), problem, allowed))
 }
 
 /// Refuses models without a mesh: their runs on each would be equal.

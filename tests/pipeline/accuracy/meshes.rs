@@ -73,7 +73,7 @@ fn meshes_that_cannot_be_extrapolated_are_refused() {
         stderr(&output)
     };
     assert!(refused(json!({"solver": {"meshes": [8, 4]}})).contains("ascending"));
-    assert!(refused(json!({"solver": {"meshes": [4]}})).contains("two or three meshes"));
+    assert!(refused(json!({"solver": {"meshes": [4]}})).contains("2 to 3 meshes"));
     assert!(refused(json!({"solver": {"meshes": [4, 7]}})).contains("has a mesh that the table"));
     let both = json!({"solver": {"meshes": [4, 8]}, "grid": {"subdivisions": [4, 8]}});
     assert!(refused(both).contains("which another axis varies already"));

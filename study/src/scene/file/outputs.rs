@@ -1,7 +1,5 @@
 //! `outputs`: nodes and elements recorded, by the user's names.
 
-use std::cell::RefCell;
-
 use billow_solver::output::history::Track;
 use billow_solver::scene::film_scene::FilmOutputs;
 use nalgebra::Vector3;
@@ -55,36 +53,12 @@ pub(super) fn read(
     let object = Object::new(json, "outputs", "outputs", OUTPUT_KEYS, &more, source)?;
     let mut nodes: Vec<(String, u32)> =
         shape.centres.iter().map(|(name, node)| ((*name).to_owned(), *node)).collect();
-    let notes = RefCell::new(notes);
-    let node = |json: &Json| match position(json)? {
-        Some(position) => {
-            let (distance, node) = nearest_node(shape, position);
-            if distance > MAX_DISTANCE * shape.size() {
-                let position = <[f64; 3]>::from(position);
-                notes.borrow_mut().push(format!(
-                    "outputs.nodes: the node nearest to {position:?} m is {distance:.4} m away"
-                ));
-            }
-            Ok(node)
-        }
-        None => vertex(json, shape),
-    };
-    collect(&object, "nodes", NODES, &mut nodes, &node)?;
     let mut elements = Vec::new();
-    let element = |json: &Json| match position(json)? {
-        Some(position) => {
-            let (distance, element) = nearest_element(shape, position);
-            if distance > MAX_DISTANCE * shape.size() {
-                let position = <[f64; 3]>::from(position);
-                notes.borrow_mut().push(format!(
-                    "outputs.elements: the element nearest to {position:?} m is {distance:.4} m away"
-                ));
-            }
-            Ok(element)
-        }
-        None => triangle(json, shape),
-    };
-    collect(&object, "elements", ELEMENTS, &mut elements, &element)?;
+    let node = Recording { key: "nodes", allowed: NODES, number: vertex, nearest: nearest_node };
+    node.read(&object, shape, &mut nodes, notes)?;
+    let (number, nearest) = (triangle, nearest_element);
+    let element = Recording { key: "elements", allowed: ELEMENTS, number, nearest };
+    element.read(&object, shape, &mut elements, notes)?;
     let (names, nodes) = nodes.into_iter().unzip();
     let (element_names, elements) = elements.into_iter().unzip();
     let sample_interval = object.needed("sample_interval")?;
@@ -100,68 +74,73 @@ const NODES: &str = "vertices by number, 0 for the first of the file, or positio
 const ELEMENTS: &str = "triangles by number, 0 for the first of the file, or positions [x, y, z] (the \
                         element nearest to it), each alone or named: [12, {\"middle\": [0, 0, 0]}]";
 
-/// Adds what a list, or an object of names, selects; `pick` finds its node or element.
-fn collect(
-    object: &Object<'_>,
-    key: &str,
-    allowed: &str,
-    found: &mut Vec<(String, u32)>,
-    pick: &dyn Fn(&Json) -> Result<u32, String>,
-) -> Result<(), InputError> {
-    let refuse = |problem: String| object.error(key, problem, allowed);
-    let mut add = |name: String, json: &Json| {
-        let index = pick(json).map_err(&refuse)?;
-        let valid = !name.is_empty()
-            && name.len() <= 64
-            && name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.'));
-        if !valid {
-            return Err(refuse(format!(
-                "{name:?} is not a name: letters, digits, _, - and dots, up to 64"
-            )));
-        }
-        match found.iter().find(|(other, _)| *other == name) {
-            // The same number twice is recorded once.
-            Some((_, other)) if *other == index => {}
-            Some(_) => return Err(refuse(format!("{name:?} is the name of two"))),
-            None => found.push((name, index)),
-        }
-        Ok(())
-    };
-    match object.given(key) {
-        None => {}
-        Some(Json::Object(members)) => {
-            for (name, json) in members {
-                add(name.clone(), json)?;
-            }
-        }
-        Some(Json::List(items)) => {
-            for item in items {
-                match item {
-                    Json::Object(members) => {
-                        for (name, json) in members {
-                            add(name.clone(), json)?;
-                        }
-                    }
-                    Json::List(_) => {
-                        let problem = format!("the position {} has no name", item.brief());
-                        return Err(refuse(problem));
-                    }
-                    number => add(number.brief(), number)?,
-                }
-            }
-        }
-        Some(other) => return Err(refuse(format!("is {}", other.kind()))),
-    }
-    Ok(())
+/// A key that selects nodes or elements.
+struct Recording {
+    key: &'static str,
+    allowed: &'static str,
+    /// The node or element of a number of the file.
+    number: fn(&Json, &Shape) -> Result<u32, String>,
+    /// The distance of the one nearest to a position, m, and its number.
+    nearest: fn(&Shape, Vector3<f64>) -> (f64, u32),
 }
 
-/// The position that a list of three gives; `None` for any other value.
-fn position(json: &Json) -> Result<Option<Vector3<f64>>, String> {
-    if !matches!(json, Json::List(_)) {
-        return Ok(None);
+impl Recording {
+    /// Adds what a list, or an object of names, selects.
+    fn read(
+        &self,
+        object: &Object<'_>,
+        shape: &Shape,
+        found: &mut Vec<(String, u32)>,
+        notes: &mut Vec<String>,
+    ) -> Result<(), InputError> {
+        let refuse = |problem: String| object.error(self.key, problem, self.allowed);
+        let members = |json: &Json| match json {
+            Json::Object(members) => Ok(members.clone()),
+            Json::List(_) => Err(refuse(format!("the position {} has no name", json.brief()))),
+            number => Ok(vec![(number.brief(), number.clone())]),
+        };
+        let named = match object.given(self.key) {
+            None => return Ok(()),
+            Some(Json::List(items)) => {
+                items.iter().map(members).collect::<Result<Vec<_>, _>>()?.concat()
+            }
+            Some(json @ Json::Object(_)) => members(json)?,
+            Some(other) => return Err(refuse(format!("is {}", other.kind()))),
+        };
+        for (name, json) in named {
+            let index = self.pick(&json, shape, notes).map_err(refuse)?;
+            let valid = !name.is_empty()
+                && name.len() <= 64
+                && name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.'));
+            if !valid {
+                let allowed = "letters, digits, _, - and dots, up to 64";
+                return Err(refuse(format!("{name:?} is not a name: {allowed}")));
+            }
+            match found.iter().find(|(other, _)| *other == name) {
+                // The same number twice is recorded once.
+                Some((_, other)) if *other == index => {}
+                Some(_) => return Err(refuse(format!("{name:?} is the name of two"))),
+                None => found.push((name, index)),
+            }
+        }
+        Ok(())
     }
-    let read = NEAR.read_vector(json).map_err(|refusal| refusal.problem)?;
-    Ok(Some(read.into()))
+
+    /// The node or element of a number, or the one nearest to a position.
+    fn pick(&self, json: &Json, shape: &Shape, notes: &mut Vec<String>) -> Result<u32, String> {
+        if !matches!(json, Json::List(_)) {
+            return (self.number)(json, shape);
+        }
+        let position = NEAR.read_vector(json).map_err(|refusal| refusal.problem)?;
+        let (distance, index) = (self.nearest)(shape, position.into());
+        if distance > MAX_DISTANCE * shape.size() {
+            notes.push(format!(
+                "outputs.{}: the one nearest to {position:?} m is {distance:.4} m away",
+                self.key
+            ));
+        }
+        Ok(index)
+    }
 }
 
 /// The distance of the node nearest to a position, m, and the node.

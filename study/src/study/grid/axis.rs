@@ -3,7 +3,7 @@
 use super::{Axis, AxisKind, Context, Grid};
 use crate::input::json::Json;
 use crate::input::keys::{KEYS, position};
-use crate::input::object::read;
+use crate::input::object::{members, read};
 use crate::input::source::Source;
 use crate::input::value::Value;
 use crate::job::proportion::Proportion;
@@ -42,16 +42,13 @@ impl Grid {
         context: Context<'_>,
     ) -> Result<(), InputError> {
         let allowed = "an object of lists of equal length";
-        let Json::Object(members) = group else {
-            let problem = format!("is {}, not an object", group.kind());
-            return Err(context.source.error(path, &group.brief(), problem, allowed));
-        };
+        let members = members(group, path, context.source, allowed)?;
         let mut columns = Vec::new();
         let mut lists: Vec<Vec<Value>> = Vec::new();
         for (name, value) in members {
             let path = format!("{path}.{name}");
             let column = self.column(name, &path, value, Section::Grid, context)?;
-            if let (true, [_]) = (is_search(value), members.as_slice()) {
+            if let (true, [_]) = (is_search(value), members) {
                 return self.read_search(column, value, &path, context);
             }
             let values = self.values(column, value, &path, context)?;

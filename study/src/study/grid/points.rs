@@ -5,7 +5,7 @@ use super::{Context, Grid};
 use crate::input::expression;
 use crate::input::json::Json;
 use crate::input::keys;
-use crate::input::object::list;
+use crate::input::object::{list, members};
 use crate::input::value::Value;
 use crate::platform::error::InputError;
 use crate::study::column::{self, Section};
@@ -22,12 +22,8 @@ impl Grid {
         let allowed = "a list of objects, as in [{\"N\": 6, \"M\": 3}]";
         for (number, point) in list(json, "grid.points", source, allowed)?.iter().enumerate() {
             let path = format!("grid.points[{number}]");
-            let Json::Object(members) = point else {
-                let problem = format!("is {}, not an object", point.kind());
-                return Err(source.error(&path, &point.brief(), problem, allowed));
-            };
             let mut values: Vec<(usize, Value)> = Vec::new();
-            for (name, json) in members {
+            for (name, json) in members(point, &path, source, allowed)? {
                 let path = format!("{path}.{name}");
                 let found = column::find(name, &path, json, settings, Section::Grid, source)?;
                 let value = value(&found, json, &path, context)?;
