@@ -268,7 +268,7 @@ fn every_feasible_design_of_a_grid_deploys() {
 fn a_model_with_equilibria_in_closed_form_has_no_ladder() {
     let scene = crate::rig::paper_scene();
     assert_eq!(models::reference_scene(&scene), None);
-    let refused = models::ladder(InstructionSet::detect(), &scene, &[]);
+    let refused = models::ladder(InstructionSet::detect(), &scene);
     let message = refused.unwrap_err().to_string();
     assert!(message.contains("solver.model") && message.contains("piston"), "{message}");
 }

@@ -96,26 +96,6 @@ fn a_film_study_gives_sound_rows_and_the_same_bits_on_any_threads() {
     assert_eq!(without_costs(one), without_costs(two));
     let files = |results: &str| histories(&folder.path().join(results));
     assert_eq!(files("one"), files("two"));
-    // Two designs, two flows: static states are computed once per design.
-    let stored = || {
-        let entries = fs::read_dir(folder.path().join("one/references")).unwrap();
-        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
-        names.sort();
-        names
-    };
-    let references = stored();
-    assert_eq!(references.len(), 2);
-
-    // A damaged one is computed again and gives the same row.
-    let (kept, lost) = (fs::read(&references[0]).unwrap(), &references[0]);
-    fs::write(lost, &kept[..20]).unwrap();
-    let rows = folder.rows("one");
-    for job in fs::read_dir(folder.path().join("one/jobs")).unwrap() {
-        fs::remove_dir_all(job.unwrap().path()).unwrap();
-    }
-    folder.stdout(&["run", "grid.json", "--results", "one"]);
-    assert_eq!(without_costs(folder.rows("one")), without_costs(rows));
-    assert_eq!(fs::read(lost).unwrap(), kept);
 }
 
 #[test]

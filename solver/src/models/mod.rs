@@ -6,7 +6,7 @@
 //! ([`ladder`]). [`reference_scene`] says which scene they belong to, so that runs of one design share
 //! them.
 
-use crate::models::film::{Ladder, LadderState};
+use crate::models::film::Ladder;
 use crate::models::run::Observer;
 use crate::output::checkpoint::CheckpointError;
 use crate::output::outcome::Deployment;
@@ -76,15 +76,10 @@ pub fn reference_scene(scene: &Scene) -> Option<Scene> {
     (scene.solver.model == ModelKind::Film).then(|| film::reference_scene(scene))
 }
 
-/// The static equilibria of a [`reference_scene`], computed as they are asked for; `known` are computed
-/// already.
-pub fn ladder(
-    instruction_set: InstructionSet,
-    scene: &Scene,
-    known: &[LadderState],
-) -> Result<Ladder, SceneError> {
+/// The static equilibria of a [`reference_scene`], computed as they are asked for.
+pub fn ladder(instruction_set: InstructionSet, scene: &Scene) -> Result<Ladder, SceneError> {
     if scene.solver.model == ModelKind::Film {
-        return Ladder::new(instruction_set, scene, known);
+        return Ladder::new(instruction_set, scene);
     }
     let problem =
         "only model `film` has a ladder; others have their static equilibria in closed form";

@@ -4,8 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use billow_solver::models::film::LadderState;
-
 use super::memory::Memory;
 use super::options::{
     OutputOptions, ProgressOptions, ResultsOption, SetOption, ThreadsOption, UnitsOption,
@@ -23,7 +21,6 @@ use crate::platform::stop::Stop;
 use crate::run::progress;
 use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run, Summary};
 use crate::run::selection::{Part, Selection};
-use crate::store::reference_file::Unread;
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
 use crate::store::table::Table;
@@ -145,10 +142,7 @@ pub(super) fn run_study(
             result_limits: study.result_limits(),
             table: &|points, records| Table::of_study(study, points, records),
             label: &|parameters| study.label(parameters, &units),
-            executor: &Solver {
-                instruction_set,
-                references: References::known(known_references(&results)),
-            },
+            executor: &Solver { instruction_set, references: References::default() },
             results: results.clone(),
             threads,
             limits,
@@ -177,17 +171,6 @@ pub(super) fn run_study(
 fn interrupted(summary: &Summary) -> Option<Error> {
     let open = summary.counts.of(Status::Pending) > 0;
     summary.signal.filter(|_| open).map(Error::Signal)
-}
-
-/// The static references that can be used. Says on stderr which files are damaged.
-fn known_references(results: &Results<'_>) -> Vec<(JobId, Vec<LadderState>)> {
-    let found = results.references();
-    for (path, problem) in &found.unread {
-        if let Unread::Damaged(problem) = problem {
-            eprintln!("billow: {}: {problem}; it is computed again", path.display());
-        }
-    }
-    found.states
 }
 
 /// A run that ended.

@@ -35,11 +35,6 @@ pub struct Costs {
 }
 
 impl Costs {
-    /// Costs where the static states of these reference scenes are known.
-    pub fn with_states(states: BTreeSet<JobId>) -> Self {
-        Self { known: BTreeMap::new(), states }
-    }
-
     /// Elements and steps of a scene of film; `None` without film, and where no mesh can be built.
     pub fn of(&mut self, scene: &Scene) -> Option<Cost> {
         if scene.solver.model != ModelKind::Film {

@@ -4,7 +4,6 @@ use std::cell::RefCell;
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::Once;
 
-use billow_solver::models::film::LadderState;
 use billow_solver::models::{self, ResumeError, Stored};
 use billow_solver::output::checkpoint::CheckpointError;
 use billow_solver::output::measures::{self, NoReference};
@@ -24,12 +23,6 @@ pub trait Executor: Sync {
     /// Number of jobs that one call should get.
     fn batch(&self) -> usize {
         1
-    }
-
-    /// Static equilibria of designs for which some were computed since the last call, to be stored for
-    /// later runs.
-    fn references(&self) -> Vec<(JobId, Vec<LadderState>)> {
-        Vec::new()
     }
 
     /// Runs a batch and returns one outcome per task, in the order of `tasks`.
@@ -71,10 +64,6 @@ pub struct Solver {
 }
 
 impl Executor for Solver {
-    fn references(&self) -> Vec<(JobId, Vec<LadderState>)> {
-        self.references.take_new()
-    }
-
     fn execute(&self, tasks: &[Task<'_>]) -> Vec<Outcome> {
         tasks.iter().map(|task| self.run(task)).collect()
     }

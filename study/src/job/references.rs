@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::Duration;
 
 use billow_solver::models;
-use billow_solver::models::film::{Ladder, LadderState};
+use billow_solver::models::film::Ladder;
 use billow_solver::output::measures::{NoReference, Reference};
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::Scene;
@@ -25,21 +25,12 @@ type Slot = Arc<Mutex<Option<Ladder>>>;
 /// Equilibria by the id of their scene.
 #[derive(Debug, Default)]
 pub struct References {
-    /// What earlier runs stored.
-    stored: BTreeMap<JobId, Vec<LadderState>>,
     slots: Mutex<BTreeMap<JobId, Slot>>,
-    /// Every state of the designs for which some were computed since the last [`Self::take_new`].
-    new: Mutex<BTreeMap<JobId, Vec<LadderState>>>,
     /// Designs used last, the latest at the end.
     recent: Mutex<VecDeque<JobId>>,
 }
 
 impl References {
-    /// Starts with equilibria that earlier runs stored.
-    pub fn known(stored: impl IntoIterator<Item = (JobId, Vec<LadderState>)>) -> Self {
-        Self { stored: stored.into_iter().collect(), ..Self::default() }
-    }
-
     /// The reference of a run of this scene: its design shape and, with a final overpressure (Pa), its
     /// shape there. `None` for a model that judges its own runs. `continues` is called from time to time;
     /// when it returns `false` the search ends.
@@ -58,8 +49,7 @@ impl References {
         let slot = Arc::clone(locked(&self.slots).entry(id.clone()).or_default());
         let Some(mut slot) = wait_for(&slot, continues) else { return Err(NoReference::Stopped) };
         if slot.is_none() {
-            let known = self.stored.get(&id).map_or(&[][..], Vec::as_slice);
-            match models::ladder(instruction_set, &scene, known) {
+            match models::ladder(instruction_set, &scene) {
                 Ok(ladder) => *slot = Some(ladder),
                 Err(error) => {
                     let missing = NoReference::NoCapsule(error.to_string());
@@ -68,26 +58,16 @@ impl References {
             }
         }
         let Some(ladder) = slot.as_mut() else { return Ok(None) };
-        let before = ladder.states().len();
         let design = ladder.design(continues);
         let end = match final_overpressure {
             Some(overpressure) => ladder.at(overpressure, continues),
             // The final shape of a run that failed is not used.
             None => design.clone(),
         };
-        let states = ladder.states();
-        if states.len() > before {
-            locked(&self.new).insert(id.clone(), states);
-        }
         drop(slot);
         self.forget_positions(id);
         let stopped = [&design, &end].into_iter().any(|found| *found == Err(NoReference::Stopped));
         if stopped { Err(NoReference::Stopped) } else { Ok(Some(Reference { design, end })) }
-    }
-
-    /// Every equilibrium of the designs for which some were computed since the last call.
-    pub fn take_new(&self) -> Vec<(JobId, Vec<LadderState>)> {
-        core::mem::take(&mut *locked(&self.new)).into_iter().collect()
     }
 
     /// Notes the use of a design and forgets the positions of the one not used for longest.

@@ -16,8 +16,8 @@ pub struct Exclusive<'a> {
     pub faults: Vec<Fault>,
 }
 
-/// Clears a folder whose lock this process holds alone: temporary files, invalid journal lines,
-/// damaged references. Jobs that ran in a process that died are noted in the journal. With a study, its name and its
+/// Clears a folder whose lock this process holds alone: temporary files and invalid journal
+/// lines. Jobs that ran in a process that died are noted in the journal. With a study, its name and its
 /// resolved text, study.json and the journal are those of this study.
 ///
 /// # Errors
@@ -30,7 +30,6 @@ pub fn open<'a>(results: &Results<'a>, study: Option<(&str, &Json)>) -> Result<E
         None => None,
     };
     results.mend_journal(&journal)?;
-    results.set_aside_references()?;
     let faults = std::mem::take(&mut journal.faults);
     let mut writer = Writer::new(results.files(), results.journal_path());
     attempts::take_deaths(results, &mut journal, &mut writer)?;

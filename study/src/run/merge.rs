@@ -67,7 +67,6 @@ pub fn merge(
     let mut merged = Merged::default();
     for source in sources {
         copy(source, target, &mut journal, &mut writer, stop, &mut merged)?;
-        copy_references(source, target)?;
     }
     if stop.requested().is_none() {
         target.check_lock(&lock)?;
@@ -141,17 +140,6 @@ fn append(
     writer.append(records)?;
     merged.copied += records.len();
     journal.records.extend(records.drain(..).map(|record| (record.job.clone(), record)));
-    Ok(())
-}
-
-/// Copies the static references that the folder does not have.
-fn copy_references(source: &Results<'_>, target: &Results<'_>) -> Result<()> {
-    let known = target.references().states;
-    for (id, states) in source.references().states {
-        if known.iter().all(|(known, _)| *known != id) {
-            target.write_reference(&id, &states)?;
-        }
-    }
     Ok(())
 }
 

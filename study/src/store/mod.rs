@@ -1,4 +1,4 @@
-//! What a study stores on disk: journal, history files, static references, checkpoints, summary table;
+//! What a study stores on disk: journal, history files, checkpoints, summary table;
 //! the cube, which is all of them in one file; and the check of a results folder.
 
 pub mod attempts;
@@ -9,7 +9,6 @@ pub mod doctor;
 pub mod finished;
 pub mod history_file;
 pub mod journal;
-pub mod reference_file;
 pub mod results;
 pub mod stored;
 pub mod table;

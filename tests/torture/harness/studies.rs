@@ -42,7 +42,7 @@ pub fn mixed() -> Value {
     base("0.05 s", &grid)
 }
 
-/// 4 piston jobs, 2 film jobs and their static references: every kind of stored file.
+/// 4 piston jobs, 2 film jobs: every kind of stored file.
 pub fn small() -> Value {
     base(
         "0.01 s",

@@ -43,7 +43,7 @@ mod statics;
 mod tracks;
 
 pub use crate::statics::Relaxation;
-pub use ladder::{Ladder, LadderState};
+pub use ladder::Ladder;
 pub use solve::{resume_scene, solve, solve_scene};
 pub use statics::{Erected, StaticState, erected, reference_scene, static_states};
 pub use tracks::{CONTACT as CONTACT_COLUMNS, FILM_STRESS_99};

@@ -1,27 +1,19 @@
 //! Cost of the jobs of a plan.
 
-use std::collections::BTreeSet;
-
 use billow_solver::scene::ModelKind;
 
 use crate::cli::print::{count, duration};
 use crate::input::value::short_number;
-use crate::job::JobId;
 use crate::job::cost::Costs;
 use crate::job::point::Point;
 
 /// Most meshes that are built for an estimate.
 const MAX_MESHES: usize = 100;
 
-/// Estimated cost of jobs, as text; `None` without jobs. `known_states` are the static states that are
-/// computed already; a study that searches runs these jobs first.
-pub(super) fn forecast(
-    points: &[&Point],
-    known_states: BTreeSet<JobId>,
-    of_search: bool,
-) -> Option<String> {
+/// Estimated cost of jobs, as text; `None` without jobs. A study that searches runs these jobs first.
+pub(super) fn forecast(points: &[&Point], of_search: bool) -> Option<String> {
     let title = if of_search { "forecast of the first generation" } else { "forecast" };
-    let mut costs = Costs::with_states(known_states);
+    let mut costs = Costs::default();
     let mut seconds = 0.0;
     let (mut jobs, mut element_steps) = (0_usize, 0.0);
     for point in points {

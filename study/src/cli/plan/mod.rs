@@ -116,8 +116,7 @@ fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generati
     if let Some(text) = lengths::in_use(&fitting) {
         eprintln!("{text}");
     }
-    let references = results.references().states.into_iter().map(|(id, _)| id).collect();
-    let cost = forecast(&missing, references, study.searched().is_some());
+    let cost = forecast(&missing, study.searched().is_some());
     cost.into_iter().chain(memory.forecast(study)).for_each(|text| eprintln!("{text}"));
     Ok(())
 }

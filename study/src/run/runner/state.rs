@@ -184,9 +184,6 @@ impl<'a, 'w> State<'a, 'w> {
             records.push(Record { job: job.id.clone(), cells, file_hash, file_stamp });
             drop(reservation);
         }
-        for (id, reference) in self.run.executor.references() {
-            self.run.results.write_reference(&id, &reference)?;
-        }
         if !records.is_empty() {
             self.log.writer().append(&records)?;
             self.summary.ran += records.len();

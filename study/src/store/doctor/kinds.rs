@@ -9,7 +9,6 @@ pub(super) fn misplaced(results: &Results<'_>) -> Vec<(PathBuf, &'static str)> {
     let folders = [
         results.journal_path(),
         results.jobs_path(),
-        results.references_path(),
         results.charts_path(),
         results.checkpoints_path(),
         results.damaged_path(),
@@ -20,7 +19,7 @@ pub(super) fn misplaced(results: &Results<'_>) -> Vec<(PathBuf, &'static str)> {
         results.attempts_path(),
         results.lock_path(),
     ];
-    for folder in [results.journal_path(), results.references_path(), results.checkpoints_path()] {
+    for folder in [results.journal_path(), results.checkpoints_path()] {
         files.extend(results.files().list(&folder).unwrap_or_default());
     }
     let folders = folders.into_iter().filter(|path| path.exists() && !path.is_dir());

@@ -12,7 +12,6 @@ use crate::job::point::Point;
 use crate::platform::error::Error;
 use crate::platform::files::disk_error;
 use crate::store::journal::Journal;
-use crate::store::reference_file::Unread;
 use crate::store::results::Results;
 use crate::store::stored::{self, Stored};
 use crate::store::table::agreement;
@@ -201,23 +200,11 @@ fn check_files(
             || journal.invalidated.contains_key(id)
     };
     unknown_files::check(results, &is_known, paths, health);
-    check_derived(results, health);
+    check_checkpoints(results, health);
     health.records = journal.records.len();
 }
 
-/// Checks static references and checkpoints.
-fn check_derived(results: &Results<'_>, health: &mut Health) {
-    for (path, problem) in results.references().unread {
-        let next = "nothing; a run that needs it computes it again";
-        match problem {
-            Unread::OtherVersion => {
-                health.note(&path, "a static reference of another version", next);
-            }
-            Unread::Damaged(problem) => {
-                health.fault(&path, format!("damaged static reference: {problem}"), REPAIR);
-            }
-        }
-    }
+fn check_checkpoints(results: &Results<'_>, health: &mut Health) {
     match results.damaged_checkpoints() {
         Ok(damaged) => {
             for (path, problem) in damaged {

@@ -9,7 +9,6 @@ use crate::job::JobId;
 use crate::platform::error::Result;
 use crate::store::attempts;
 use crate::store::journal::{Journal, Writer};
-use crate::store::reference_file::Unread;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::store::table::agreement;
@@ -56,12 +55,6 @@ pub fn repair(results: &Results<'_>) -> Result<Vec<Repaired>> {
         results.set_aside(&path)?;
         invalidate(&mut writer, &mut journal, &job)?;
         add(&path, &format!("set aside: {problem}; its job is pending"));
-    }
-    for (path, problem) in results.references().unread {
-        if let Unread::Damaged(problem) = problem {
-            results.set_aside(&path)?;
-            add(&path, &format!("set aside: {problem}; a run computes it again"));
-        }
     }
     for (path, problem) in results.damaged_checkpoints()? {
         results.set_aside(&path)?;

@@ -4,10 +4,8 @@
 //! results/<study>/study.json        the study as last run, fully written out: a study file itself
 //!                 journal/*.jsonl   which jobs ended, and how (crate::store::journal)
 //!                 jobs/<ab>/<id>.h5 histories (crate::store::history_file)
-//!                 references/*.json static references of the designs (crate::job::references)
 //!                 checkpoints/*.json states of jobs that have not ended (crate::store::checkpoint_file)
 //!                 summary.parquet   the table, built from plan and journal (crate::store::table)
-//!                 index.json        what commands need without planning again (crate::store::index)
 //!                 charts/           pictures (crate::chart)
 //!                 attempts.jsonl    during a run: which jobs it has started (crate::store::attempts)
 //!                 submission/       what was given to a scheduler (`crate::cluster`)
@@ -42,11 +40,10 @@ pub const SUBMISSION: &str = "submission";
 /// Name of the folder with the results of the tasks of a scheduler.
 pub const PARTS: &str = "parts";
 /// Names that a run writes into a results folder.
-pub const RESULT_NAMES: [&str; 12] = [
+pub const RESULT_NAMES: [&str; 11] = [
     "study.json",
     "journal",
     "jobs",
-    "references",
     "checkpoints",
     "summary.parquet",
     "charts",
@@ -102,11 +99,6 @@ impl<'a> Results<'a> {
     /// Path of a job's history file.
     pub fn job_path(&self, id: &JobId) -> PathBuf {
         self.jobs_path().join(&id.as_str()[..2]).join(format!("{id}.h5"))
-    }
-
-    /// Path of the static references.
-    pub fn references_path(&self) -> PathBuf {
-        self.root.join("references")
     }
 
     /// Path of the pictures.
@@ -178,13 +170,7 @@ impl<'a> Results<'a> {
         // The folders of histories have names of two digits.
         folders
             .retain(|path| path.is_dir() && path.file_name().is_some_and(|name| name.len() == 2));
-        let written_under_lock = [
-            self.journal_path(),
-            self.references_path(),
-            self.checkpoints_path(),
-            self.root.clone(),
-        ];
-        folders.extend(written_under_lock);
+        folders.extend([self.journal_path(), self.checkpoints_path(), self.root.clone()]);
         // Commands without the lock write pictures.
         let charts = self.charts_path();
         let mut removed = files::remove_stale_files(self.files, &charts)

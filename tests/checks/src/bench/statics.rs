@@ -25,7 +25,7 @@ pub(super) fn measure(subdivisions: u32, plan: &Plan<'_>) -> Result<Row> {
     let search = || -> Result<_> {
         let start = Instant::now();
         let reference = film::reference_scene(&scene);
-        let mut ladder = models::ladder(plan.instruction_set, &reference, &[])
+        let mut ladder = models::ladder(plan.instruction_set, &reference)
             .map_err(|error| failed(error.to_string()))?;
         let design = ladder.design(&mut || true);
         let end = ladder.at(END_OVERPRESSURE, &mut || true);
@@ -42,7 +42,7 @@ pub(super) fn measure(subdivisions: u32, plan: &Plan<'_>) -> Result<Row> {
     Ok(vec![
         ("subdivisions", subdivisions.into()),
         ("elements", cost.elements.into()),
-        ("states", ladder.states().len().into()),
+        ("states", ladder.states().into()),
         ("wall_seconds", seconds.into()),
     ])
 }

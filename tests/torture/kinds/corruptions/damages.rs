@@ -1,4 +1,4 @@
-//! The damages: what happens to any file, and what is special to journal, study.json, references, histories, table and
+//! The damages: what happens to any file, and what is special to journal, study.json, histories, table and
 //! other files.
 
 use std::fs::{self, File};
@@ -58,10 +58,6 @@ impl Target {
     pub fn history(&self, job: &str) -> PathBuf {
         self.results.join("jobs").join(&job[..2]).join(format!("{job}.h5"))
     }
-
-    fn references(&self) -> Vec<PathBuf> {
-        place::files(&self.results.join("references"))
-    }
 }
 
 /// A file of the folder.
@@ -69,25 +65,19 @@ type Which = fn(&Target) -> Option<PathBuf>;
 
 const JOURNAL: Which = |target| journal::paths(&target.results).into_iter().next();
 const STUDY: Which = |target| Some(target.results.join("study.json"));
-const REFERENCE: Which = |target| target.references().into_iter().next();
 const HISTORY: Which = |target| Some(target.history(&target.job));
 const TABLE: Which = |target| Some(target.results.join("summary.parquet"));
 
 /// Every damage.
 pub fn all() -> Vec<Damage> {
     let mut all = Vec::new();
-    for (name, file) in [
-        ("journal", JOURNAL),
-        ("study.json", STUDY),
-        ("reference", REFERENCE),
-        ("history", HISTORY),
-        ("table", TABLE),
-    ] {
+    for (name, file) in
+        [("journal", JOURNAL), ("study.json", STUDY), ("history", HISTORY), ("table", TABLE)]
+    {
         all.extend(of_any_file(name, file));
     }
     all.extend(of_text("journal", JOURNAL, "peak_vz"));
     all.extend(of_text("study.json", STUDY, "bottom_radius"));
-    all.extend(of_text("reference", REFERENCE, "states"));
     all.extend(of_lines());
     all.extend(of_places());
     all.extend(others());
@@ -106,8 +96,7 @@ fn damage(
 fn of_any_file(what: &'static str, file: Which) -> Vec<Damage> {
     // Every cell of the table is compared; other bytes of it hold no result.
     let flips = if what == "table" { Expect::Harmless } else { Expect::Fault };
-    let deleted =
-        if ["reference", "table"].contains(&what) { Expect::Harmless } else { Expect::Fault };
+    let deleted = if what == "table" { Expect::Harmless } else { Expect::Fault };
     let edit = move |name: &str, expect, edit: fn(&mut Vec<u8>, &mut Random)| {
         damage(format!("{what}: {name}"), expect, move |target, random| {
             edit_file(&file(target)?, |bytes| edit(bytes, random))
@@ -168,19 +157,17 @@ fn of_text(what: &'static str, file: Which, number: &'static str) -> Vec<Damage>
             Some(format!("{{{}", text.split_once(',')?.1))
         }),
     ];
-    if what != "reference" {
-        all.push(edit("of another version", Expect::OtherVersion, |text, _, _| {
-            let (first, rest) = match text.split_once('\n') {
-                Some((line, rest)) if line.ends_with('}') => (line, format!("\n{rest}")),
-                _ => (text.trim_end(), String::new()),
-            };
-            let object = seal::open(first).or_else(|_| seal::open(text)).ok()?;
-            let at = object.find("\"version\":")? + 10;
-            let at = at + object[at..].find(|symbol: char| symbol.is_ascii_digit())?;
-            let other = format!("{}9{}", &object[..at], &object[at..]);
-            Some(seal::seal(&other) + &rest)
-        }));
-    }
+    all.push(edit("of another version", Expect::OtherVersion, |text, _, _| {
+        let (first, rest) = match text.split_once('\n') {
+            Some((line, rest)) if line.ends_with('}') => (line, format!("\n{rest}")),
+            _ => (text.trim_end(), String::new()),
+        };
+        let object = seal::open(first).or_else(|_| seal::open(text)).ok()?;
+        let at = object.find("\"version\":")? + 10;
+        let at = at + object[at..].find(|symbol: char| symbol.is_ascii_digit())?;
+        let other = format!("{}9{}", &object[..at], &object[at..]);
+        Some(seal::seal(&other) + &rest)
+    }));
     all
 }
 
@@ -229,10 +216,6 @@ fn of_places() -> Vec<Damage> {
     let fault = (Expect::Fault, 1);
     let two_histories =
         |target: &Target| (target.history(&target.job), target.history(&target.second));
-    let two_references = |target: &Target| {
-        let mut references = target.references().into_iter();
-        references.next().zip(references.next())
-    };
     vec![
         damage("history: two swapped", fault, move |target, _| swap(two_histories(target))),
         damage("history: a link to that of another job", fault, move |target, _| {
@@ -255,11 +238,6 @@ fn of_places() -> Vec<Damage> {
         damage("history: only its time changed", (Expect::Harmless, 1), |target, _| {
             let file = File::options().write(true).open(target.history(&target.job)).ok()?;
             file.set_modified(SystemTime::now() - Duration::from_hours(24)).ok()
-        }),
-        damage("reference: two swapped", fault, move |target, _| swap(two_references(target)?)),
-        damage("reference: under another id", fault, move |target, _| {
-            let (path, _) = two_references(target)?;
-            fs::rename(&path, path.with_file_name(format!("{}.json", "0".repeat(32)))).ok()
         }),
         damage("table: of another study", fault, |target, _| {
             let name = "summary.parquet";
@@ -287,7 +265,7 @@ fn others() -> Vec<Damage> {
             fs::write(target.results.join("lock"), "99999").ok()
         }),
         damage("temporary files of dead processes", harmless, |target, _| {
-            let folders = ["", "journal", "references", "charts", "checkpoints"];
+            let folders = ["", "journal", "charts", "checkpoints"];
             for folder in folders.map(|folder| target.results.join(folder)) {
                 fs::create_dir_all(&folder).ok()?;
                 fs::write(folder.join(".x.1-0.tmp"), "half").ok()?;

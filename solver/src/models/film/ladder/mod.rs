@@ -50,15 +50,6 @@ const MAX_MIDDLE_ERROR: f64 = 3e-3;
 /// A level on the grid of levels: x times [`STEPS_PER_RUNG`].
 pub type Level = i32;
 
-/// One computed state: its level on the grid, and its shape.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LadderState {
-    /// Level.
-    pub level: Level,
-    /// Shape.
-    pub shape: StaticShape,
-}
-
 /// Static equilibria of one design, film and supports.
 #[derive(Debug, Clone)]
 pub struct Ladder {
@@ -74,17 +65,12 @@ pub struct Ladder {
 }
 
 impl Ladder {
-    /// The ladder of a [`super::reference_scene`] with states that are known already. Known states whose
-    /// pressure is not that of their level are ignored.
-    pub fn new(
-        instruction_set: InstructionSet,
-        scene: &Scene,
-        known: &[LadderState],
-    ) -> Result<Self, SceneError> {
+    /// The ladder of a [`super::reference_scene`].
+    pub fn new(instruction_set: InstructionSet, scene: &Scene) -> Result<Self, SceneError> {
         let pattern = FoldPattern::new(&scene.design)?;
         let mean_radius = 0.5 * (pattern.bottom_radius + pattern.top_radius);
         let film = &scene.film;
-        let mut ladder = Self {
+        Ok(Self {
             instruction_set,
             scene: scene.clone(),
             design_overpressure: design_overpressure(
@@ -95,20 +81,12 @@ impl Ladder {
             capsule: None,
             states: BTreeMap::new(),
             positions: BTreeMap::new(),
-        };
-        let valid = known.iter().filter(|state| {
-            state.shape.overpressure.to_bits() == ladder.pressure(state.level).to_bits()
-        });
-        ladder.states = valid.map(|state| (state.level, Ok(state.shape))).collect();
-        Ok(ladder)
+        })
     }
 
-    /// Every equilibrium computed so far, level ascending.
-    pub fn states(&self) -> Vec<LadderState> {
-        let found = |(level, state): (&Level, &Result<StaticShape, NoReference>)| {
-            Some(LadderState { level: *level, shape: *state.as_ref().ok()? })
-        };
-        self.states.iter().filter_map(found).collect()
+    /// Number of equilibria computed so far.
+    pub fn states(&self) -> usize {
+        self.states.values().filter(|state| state.is_ok()).count()
     }
 
     /// Forgets the positions of the nodes, which take most memory. Results stay the same.
