@@ -7,9 +7,10 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::error::ErrorKind;
+use clap::{Parser, Subcommand};
 
-use crate::platform::error::{Error, Result};
+use crate::platform::error::{Error, InputError, Result};
 use crate::platform::exit_code::{EXIT_CODES, Exit};
 use crate::platform::memory as process_memory;
 use crate::platform::output::Output;
@@ -47,7 +48,6 @@ mod solve;
 mod status;
 mod submit;
 mod table;
-pub mod usage;
 
 pub use options::Format;
 
@@ -137,7 +137,7 @@ pub fn command<W: Into<OsString> + Clone>(
         Err(error) if !error.use_stderr() => {
             write!(out, "{}", error.render()).map_err(output_error)
         }
-        Err(error) => Err(usage::error(&error, Cli::command())),
+        Err(error) => Err(refused_line(&error)),
     }
 }
 
@@ -187,6 +187,29 @@ fn commands_help() -> String {
         text.push('\n');
     }
     text
+}
+
+/// The error of a command line that the parser refuses.
+pub fn refused_line(refused: &clap::Error) -> Error {
+    let mut text = refused.render().to_string();
+    if refused.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        eprintln!("{text}");
+        "no command is given".clone_into(&mut text);
+    }
+    let lines = text.lines().map(str::trim_end).filter(|line| !line.is_empty());
+    let lines: Vec<&str> = lines.take_while(|line| !line.starts_with("For more info")).collect();
+    let problem = lines.join("\n");
+    Error::Input(InputError {
+        file: "command line".to_owned(),
+        key: String::new(),
+        value: String::new(),
+        problem: problem
+            .strip_prefix("error: ")
+            .unwrap_or(&problem)
+            .replace("Usage: ", "  usage: "),
+        allowed: String::new(),
+        hint: "the same command with --help".to_owned(),
+    })
 }
 
 /// The exit codes below `billow --help`.

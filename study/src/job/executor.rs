@@ -156,7 +156,7 @@ fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
         let previous = panic::take_hook();
-        // The message becomes a table cell. Printing it would break the progress bars.
+        // The message becomes a table cell. Printing it would break the line of progress.
         panic::set_hook(Box::new(move |info| {
             let kept = MESSAGE.with_borrow_mut(|message| {
                 let Some(message) = message else { return false };

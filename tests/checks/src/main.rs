@@ -4,11 +4,11 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use billow_checks::{bench, cases, convergence, exact, stability};
-use billow_study::cli::{output_error, usage};
+use billow_study::cli::{output_error, refused_line};
 use billow_study::platform::error::Result;
 use billow_study::platform::exit_code::Exit;
 use billow_study::platform::output::{self, Output};
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{Parser, Subcommand};
 
 /// Checks of the solver of billow: is it right, how exact, how fast, and where does it fail?
 #[derive(Debug, Parser)]
@@ -57,6 +57,6 @@ fn run(out: &mut dyn Write) -> Result<()> {
         Err(error) if !error.use_stderr() => {
             write!(out, "{}", error.render()).map_err(output_error)
         }
-        Err(error) => Err(usage::error(&error, Cli::command())),
+        Err(error) => Err(refused_line(&error)),
     }
 }

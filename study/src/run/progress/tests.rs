@@ -1,12 +1,9 @@
-//! The lines and bars of a run, event by event.
+//! The lines of a run, event by event.
 
-use std::io;
-use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use billow_solver::models::run::Progress;
 use billow_solver::output::outcome::FailureKind;
-use indicatif::TermLike;
 
 use super::work::duration_text;
 use super::*;
@@ -31,7 +28,7 @@ fn events() -> Vec<Event> {
 
 #[test]
 fn lines_report_the_progress_of_the_study() {
-    let mut lines = Lines::new(Vec::new(), true, NonZero::new(1));
+    let mut lines = Lines::new(Vec::new(), true, false, NonZero::new(1));
     for event in events() {
         lines.event(&event);
     }
@@ -43,7 +40,7 @@ fn lines_report_the_progress_of_the_study() {
 
 #[test]
 fn a_long_job_is_reported_from_time_to_time_with_the_remaining_time() {
-    let mut lines = Lines::new(Vec::new(), false, NonZero::new(1));
+    let mut lines = Lines::new(Vec::new(), false, false, NonZero::new(1));
     let [started, _, job, sample, finished] = events().try_into().unwrap();
     lines.event(&started);
     lines.event(&job);
@@ -67,111 +64,31 @@ fn a_long_job_is_reported_from_time_to_time_with_the_remaining_time() {
 
 #[test]
 fn a_study_without_jobs_to_run_writes_no_line() {
-    let mut lines = Lines::new(Vec::new(), false, NonZero::new(1));
+    let mut lines = Lines::new(Vec::new(), false, false, NonZero::new(1));
     lines.event(&Event::GenerationStarted { number: 0, jobs: 4, finished: 4 });
     lines.event(&Event::Ended);
     assert!(lines.out.is_empty());
 }
 
-/// Ends each write to a [`Screen`]. A bar writes a line at once.
-const WRITE_END: char = '\u{1f}';
-
-/// A terminal that keeps everything that was written to it.
-#[derive(Debug, Clone)]
-struct Screen(Arc<Mutex<String>>, u16);
-
-impl TermLike for Screen {
-    fn width(&self) -> u16 {
-        self.1
-    }
-
-    fn move_cursor_up(&self, _: usize) -> io::Result<()> {
-        Ok(())
-    }
-
-    fn move_cursor_down(&self, _: usize) -> io::Result<()> {
-        Ok(())
-    }
-
-    fn move_cursor_right(&self, _: usize) -> io::Result<()> {
-        Ok(())
-    }
-
-    fn move_cursor_left(&self, _: usize) -> io::Result<()> {
-        Ok(())
-    }
-
-    fn write_line(&self, text: &str) -> io::Result<()> {
-        self.write_str(&format!("{text}\n"))
-    }
-
-    fn write_str(&self, text: &str) -> io::Result<()> {
-        let mut written = self.0.lock().unwrap();
-        written.push_str(text);
-        written.push(WRITE_END);
-        Ok(())
-    }
-
-    fn clear_line(&self) -> io::Result<()> {
-        self.write_str("<clear>")
-    }
-
-    fn flush(&self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-/// What a screen of this width shows at the end of the events, and the bars.
-fn drawn(width: u16, events: &[Event]) -> (Screen, Bars) {
-    let screen = Screen(Arc::default(), width);
-    let target = ProgressDrawTarget::term_like(Box::new(screen.clone()));
-    let mut bars = Bars::new(target, false, false, NonZero::new(1));
-    for event in events {
-        bars.event(event);
-    }
-    bars.study.force_draw();
-    bars.jobs[1].force_draw();
-    (screen, bars)
-}
-
 #[test]
-fn bars_show_the_study_and_the_running_job_and_are_cleared() {
-    let (screen, mut bars) = drawn(100, &events()[..4]);
-    let text = screen.0.lock().unwrap().clone();
-    assert!(text.contains("note: a line is torn"), "{text}");
-    assert!(text.contains("elapsed, 3 of 4 jobs finished, 0 failed"), "{text}");
-    assert!(!text.contains("remaining"), "no estimate from no time: {text}");
-    let job = "abababab  t 0.500 of 2 s  z_centre 0.300 m  pressure 51 Pa  N=5 M=2";
-    assert!(text.contains(job), "{text}");
-    assert!(!text.contains('\x1b'), "no colour was asked for");
-    bars.event(&events()[4]);
-    bars.study.force_draw();
-    let text = screen.0.lock().unwrap().clone();
-    assert!(text.contains("4 of 4 jobs finished, 1 failed"), "{text}");
-    bars.event(&Event::Ended);
-    assert!(screen.0.lock().unwrap().trim_end_matches(WRITE_END).ends_with("<clear>"));
-}
-
-#[test]
-fn no_line_is_wider_than_the_terminal() {
-    let mut events = events();
-    events.remove(1);
-    if let Event::JobStarted { label, .. } = &mut events[1] {
-        *label = "mass_flow_rate=0.005 strategy=a_long_name ".repeat(5);
+fn a_terminal_has_one_line_that_is_drawn_again() {
+    let mut lines = Lines::new(Vec::new(), false, true, NonZero::new(1));
+    let [started, note, job, sample, finished] = events().try_into().unwrap();
+    for event in [started, job, sample] {
+        lines.event(&event);
     }
-    for width in [30, 40, 80] {
-        let (screen, _bars) = drawn(width, &events[..3]);
-        let text = screen.0.lock().unwrap().clone();
-        for line in text.split([WRITE_END, '\n']) {
-            let columns = line.trim_end().chars().count();
-            assert!(columns <= usize::from(width), "{width}: {columns} {line:?}");
-        }
-        assert!(text.contains("elapsed"), "{text}");
+    let long_ago = Instant::now().checked_sub(Duration::from_secs(1)).unwrap();
+    lines.last = Some(long_ago);
+    let sample = events().remove(3);
+    for event in [sample, note, finished, Event::Ended] {
+        lines.event(&event);
     }
-    let (screen, _bars) = drawn(80, &events[..3]);
-    let text = screen.0.lock().unwrap().clone();
-    assert!(text.contains("3 of 4 jobs finished, 0 failed"), "{text}");
-    assert!(text.contains("t 0.500 of 2 s  z_centre 0.300 m  pressure 51 Pa"), "{text}");
+    let expected = "4 jobs, 3 finished, 1 to run\n\
+        \r\x1b[K3 of 4 jobs finished, 0 failed; abababab  t 0.500 of 2 s  z_centre 0.300 m  pre\
+        \r\x1b[Knote: a line is torn\n\
+        \r\x1b[K4 of 4 jobs finished, 1 failed\
+        \r\x1b[K4 of 4 jobs finished, 1 failed\n";
+    assert_eq!(String::from_utf8(lines.out).unwrap(), expected);
 }
 
 #[test]
