@@ -229,8 +229,8 @@ def check_cube(path, results, frame):
     with xr.open_dataset(path, engine="h5netcdf") as cube:
         check(cube.attrs["format"] == "billow-cube" and cube.attrs["complete"] == 1, f"{path}: {cube.attrs['format']}")
         check(cube.attrs["study"] == (results / "study.json").read_text(), f"{path}: another study")
-        check(list(cube["z_max"].dims) == names + ["time"], f"{path}: z_max along {cube['z_max'].dims}")
-        check(set(cube.coords) == set(names + ["time"]), f"{path}: coordinates {list(cube.coords)}")
+        check(list(cube["z_max"].dims) == ["point", "time"], f"{path}: z_max along {cube['z_max'].dims}")
+        check(set(cube.coords) == set(names + ["point", "time"]), f"{path}: coordinates {list(cube.coords)}")
         for name, variable in cube.variables.items():
             check(variable.attrs["units"] in UNITS, f"{path}: {name} in {variable.attrs['units']}")
             check(variable.attrs["long_name"], f"{path}: {name} without long_name")
@@ -238,8 +238,10 @@ def check_cube(path, results, frame):
             check(cube[name].attrs["units"] == ("kg/s" if name == "mass_flow_rate" else "1"), f"{path}: {name}")
         check(cube["time"].dtype == np.float64 and cube["time"].attrs["units"] == "s", f"{path}: time")
         check(cube["status"].size == len(frame), f"{path}: {cube['status'].size} points, {len(frame)} rows")
-        for _, row in frame.iterrows():
-            point = cube.sel({name: row[name] for name in names})
+        grid = cube.set_index(point=names).unstack("point")
+        check(grid["status"].size == len(frame), f"{path}: {grid['status'].size} points of the grid")
+        for number, (_, row) in enumerate(frame.iterrows()):
+            point = cube.isel(point=number)
             for name in ["job", "status", "final_volume", "t_90_z_rim"]:
                 check(same(point[name].item(), row[name]), f"{path}: {name} of {row['job']} is {point[name].item()}")
             check(point["verdict"].item() == ("" if pd.isna(row["verdict"]) else row["verdict"]), f"{path}: verdict")

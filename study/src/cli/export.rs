@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::options::{OutputOptions, QuietOption};
+use super::options::OutputOptions;
 use super::print::print_rows;
 use super::results::{self, StudyArgs};
 use crate::input::value::Value;
@@ -18,8 +18,8 @@ const EXTENSIONS: [&str; 2] = ["nc", "h5"];
 pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
-    /// Write the cube of the study: every history over the axes of the grid and time, and every column of the
-    /// table over the axes, as one file that xarray opens (netCDF-4 in HDF5). FILE ends in .nc or .h5.
+    /// Write the cube of the study: every history over points and time, and every column of the table over
+    /// the points, as one file that xarray opens (netCDF-4 in HDF5). FILE ends in .nc or .h5.
     #[arg(long, value_name = "FILE", required = true)]
     pub out: PathBuf,
     /// Only these columns of the histories, comma-separated [default: all].
@@ -27,8 +27,6 @@ pub struct Args {
     pub columns: Vec<String>,
     #[command(flatten)]
     output: OutputOptions,
-    #[command(flatten)]
-    quiet: QuietOption,
 }
 
 /// Runs `billow export`: prints one row for the file.
@@ -39,23 +37,12 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     check_extension(&args.out)?;
     let stored = results::read(&results::folder(&args.study)?)?;
     let written = cube::write(&stored, &args.columns, &args.out)?;
-    if let Some(reason) = written.no_product.filter(|_| !args.quiet.quiet) {
-        eprintln!(
-            "billow: the study {}, so its points are no grid: the cube has the dimension `point`",
-            reason.text()
-        );
-    }
-    let Written { dimensions, variables, jobs, .. } = written;
-    let dimensions: Vec<String> =
-        dimensions.iter().map(|(name, length)| format!("{name} {length}")).collect();
+    let Written { points, times, variables, histories } = written;
     let number = |number: usize| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));
-    let row = vec![
-        Value::Text(args.out.display().to_string()),
-        Value::Text(dimensions.join(", ")),
-        number(variables),
-        number(jobs),
-    ];
-    print_rows(&["file", "dimensions", "variables", "jobs"], &[row], args.output.format(), out)
+    let mut row = vec![Value::Text(args.out.display().to_string())];
+    row.extend([points, times, variables, histories].map(number));
+    let names = ["file", "points", "times", "variables", "histories"];
+    print_rows(&names, &[row], args.output.format(), out)
 }
 
 fn check_extension(path: &Path) -> Result<()> {

@@ -7,7 +7,6 @@
 //! Every error of a study is found here, before anything runs.
 
 mod accuracy;
-mod axes;
 mod column;
 mod expand;
 mod filter;
@@ -44,7 +43,6 @@ use crate::job::result_limit::ResultLimit;
 use crate::platform::error::{InputError, Result as BillowResult};
 pub(crate) use accuracy::features;
 use accuracy::{ACCURACY, Accuracy};
-pub use axes::{GridAxis, NoProduct};
 use grid::{Context, Grid};
 pub use parameters::{StudyKey, Zipped};
 pub use search::{Border, Criterion, Level, Outcome};

@@ -87,40 +87,26 @@ fn attribute(file: &File, name: &str, attribute: &str) -> String {
 }
 
 #[test]
-fn every_history_stands_at_its_point_of_the_grid() {
+fn every_history_stands_at_its_point_with_the_parameters_as_coordinates() {
     let varied = r#""strategies": {"rapid": {"inflow": [{"from": 0, "to": "5 ms"}]},
                                    "late": {"inflow": [{"from": "1 ms", "to": "6 ms"}]}},
-        "replicates": {"seed": 2},
-        "grid": {"strategy": ["rapid", "late"],
-                 "zip": [{"mass_flow_rate": ["1 g/s", "2 g/s", "3 g/s"], "film.thickness": [2e-5, 2e-5, 3e-5]}]}"#;
+        "grid": {"strategy": ["rapid", "late"], "mass_flow_rate": ["1 g/s", "2 g/s"]}"#;
     let folder = ran(varied, &|number| Some(invented(number)));
     let written = folder.write(&[]).unwrap();
-    let named = |name: &str, length: usize| (name.to_owned(), length);
-    let dimensions =
-        [named("strategy", 2), named("mass_flow_rate", 3), named("seed", 2), named("time", 7)];
-    let mut found = written.dimensions.clone();
-    found[..2].sort_by(|a, b| b.0.cmp(&a.0));
-    assert_eq!(found, dimensions);
-    assert_eq!((written.no_product, folder.stored.points.len() >= written.jobs), (None, true));
-
+    assert_eq!((written.points, written.times, written.histories), (4, 7, 4));
     let file = File::open(folder.path()).unwrap();
-    let rim = file.dataset("z_rim").unwrap();
-    let lengths: Vec<usize> = written.dimensions.iter().map(|(_, length)| *length).collect();
-    assert_eq!(rim.shape(), lengths);
-    assert_eq!(texts(&file, "strategy").len(), 2);
-    assert_eq!(numbers(&file, "thickness"), [2e-5, 2e-5, 3e-5]);
-    assert_eq!(attribute(&file, "thickness", "units"), "m");
+    assert_eq!(file.dataset("z_rim").unwrap().shape(), [4, 7]);
+    assert_eq!(numbers(&file, "point"), [0.0, 1.0, 2.0, 3.0]);
+    assert_eq!(texts(&file, "strategy").len(), 4);
     assert_eq!(attribute(&file, "mass_flow_rate", "units"), "kg/s");
-    assert_eq!(attribute(&file, "z_rim", "coordinates"), "thickness");
-    assert_eq!(attribute(&file, "status", "coordinates"), "thickness");
-    assert_eq!(texts(&file, "status"), vec!["done"; 12]);
-
-    // Each position has the history of its job.
+    let coordinates = attribute(&file, "z_rim", "coordinates");
+    assert_eq!(attribute(&file, "status", "coordinates"), coordinates);
+    assert!(coordinates.contains("strategy") && coordinates.contains("mass_flow_rate"));
     let (rims, jobs) = (numbers(&file, "z_rim"), texts(&file, "job"));
     for (number, point) in folder.stored.points.iter().enumerate() {
-        let position = jobs.iter().position(|job| *job == point.job.id.as_str()).unwrap();
-        let stored = fixture::deployment(u32::try_from(number).unwrap(), 7);
-        assert_eq!(rims[7 * position..7 * (position + 1)], *stored.history.column("z_rim"));
+        assert_eq!(jobs[number], point.job.id.as_str());
+        let history = invented(number).history;
+        assert_eq!(rims[7 * number..7 * (number + 1)], *history.column("z_rim"));
     }
     for name in file.member_names().unwrap() {
         for label in ["units", "long_name"] {
@@ -138,85 +124,43 @@ fn bytes_of(path: &Path) -> Vec<u8> {
 }
 
 #[test]
-fn points_without_values_are_nan_and_their_status_says_why() {
-    // The filter removes 3 g/s with M 3; M 2 is infeasible.
-    let varied = r#""grid": {"M": [3, 2], "mass_flow_rate": ["1 g/s", "2 g/s", "3 g/s"],
-                             "filter": "M == 2 or mass_flow_rate < '2.5 g/s'"}"#;
+fn what_a_point_does_not_have_is_nan_and_its_status_says_why() {
+    // M 2 is infeasible; the first job is shorter; the third one has a column of its own.
+    let varied = r#""grid": {"M": [3, 2], "mass_flow_rate": ["1 g/s", "2 g/s", "3 g/s", "4 g/s"]}"#;
     let run = |number: usize| {
         let mut deployment = fixture::deployment(1, if number == 0 { 4 } else { 7 });
-        if number == 1 {
-            let failure = Failure::new(AuditKind::EnergyLedger, 0.004, "gas volume");
-            deployment.stop = Stop::Failed(failure);
-        }
-        Some(deployment)
-    };
-    let folder = ran(varied, &run);
-    folder.write(&["z_rim"]).unwrap();
-    let file = File::open(folder.path()).unwrap();
-    assert_eq!(
-        texts(&file, "status"),
-        ["done", "energy_drift", NOT_PLANNED, "infeasible", "infeasible", "infeasible"]
-    );
-    let rims = numbers(&file, "z_rim");
-    assert_eq!(rims.len(), 6 * 4);
-    assert!(rims[..4].iter().all(|value| value.is_finite()));
-    assert!(rims[4..].iter().all(|value| value.is_nan()));
-    assert!(texts(&file, "verdict")[2..].iter().all(String::is_empty));
-    assert!(!file.link_exists("pressure"), "only z_rim is asked for");
-}
-
-#[test]
-fn jobs_of_different_lengths_share_one_time_axis() {
-    let varied = r#""grid": {"solver.end_time": ["3 ms", "6 ms"]}"#;
-    let run = |number: usize| Some(fixture::deployment(1, if number == 0 { 4 } else { 7 }));
-    let folder = ran(varied, &run);
-    folder.write(&[]).unwrap();
-    let file = File::open(folder.path()).unwrap();
-    assert_eq!(numbers(&file, "time").len(), 7);
-    let pressure = numbers(&file, "pressure");
-    assert!(pressure[..4].iter().chain(&pressure[7..]).all(|value| value.is_finite()));
-    assert!(pressure[4..7].iter().all(|value| value.is_nan()));
-
-    let varied = r#""grid": {"outputs.sample_interval": ["1 ms", "2 ms"]}"#;
-    let error = ran(varied, &run).write(&[]).unwrap_err().to_string();
-    assert!(error.contains("outputs.sample_interval: its jobs have several values"), "{error}");
-    assert!(error.contains("0.001 s, 0.002 s") && error.contains("--set"), "{error}");
-}
-
-#[test]
-fn a_column_that_one_job_has_is_nan_in_the_others() {
-    let varied = r#""grid": {"mass_flow_rate": ["1 g/s", "2 g/s"]}"#;
-    let folder = ran(varied, &|number| {
-        let mut deployment = fixture::deployment(1, 7);
-        if number == 1 {
-            deployment.tracks.push(Track {
+        match number {
+            1 => {
+                let failure = Failure::new(AuditKind::EnergyLedger, 0.004, "gas volume");
+                deployment.stop = Stop::Failed(failure);
+            }
+            2 => deployment.tracks.push(Track {
                 name: "smallest_gap".to_owned(),
                 unit: "m",
                 meaning: "smallest gap",
                 values: vec![0.5; 7],
-            });
+            }),
+            3 => return None,
+            _ => {}
         }
         Some(deployment)
-    });
-    folder.write(&[]).unwrap();
+    };
+    let folder = ran(varied, &run);
+    folder.write(&["z_rim", "smallest_gap"]).unwrap();
     let file = File::open(folder.path()).unwrap();
-    let gaps = numbers(&file, "smallest_gap");
-    assert!(gaps[..7].iter().all(|gap| gap.is_nan()));
-    assert_eq!(gaps[7..], [0.5; 7]);
+    let status = texts(&file, "status");
+    assert_eq!(status[..5], ["done", "energy_drift", "done", "pending", "infeasible"]);
+    let finite = |name: &str| -> Vec<bool> {
+        numbers(&file, name).iter().map(|value| value.is_finite()).collect()
+    };
+    let expected = |points: [usize; 4]| {
+        let has = |point: usize, time: usize| time < points.get(point).copied().unwrap_or(0);
+        (0..8).flat_map(|point| (0..7).map(move |time| has(point, time))).collect::<Vec<bool>>()
+    };
+    assert_eq!(finite("z_rim"), expected([4, 0, 7, 0]));
+    assert_eq!(finite("smallest_gap"), expected([0, 0, 7, 0]));
     assert_eq!(attribute(&file, "smallest_gap", "units"), "m");
-}
-
-#[test]
-fn a_study_of_single_points_has_the_dimension_point() {
-    let varied =
-        r#""grid": {"points": [{"mass_flow_rate": "1 g/s"}, {"mass_flow_rate": "3 g/s"}]}"#;
-    let folder = ran(varied, &|number| Some(invented(number)));
-    let written = folder.write(&["z_rim"]).unwrap();
-    assert_eq!(written.no_product, Some(NoProduct::SinglePoints));
-    assert_eq!(written.dimensions[0], ("point".to_owned(), 2));
-    let file = File::open(folder.path()).unwrap();
-    assert_eq!(numbers(&file, "mass_flow_rate"), [0.001, 0.003]);
-    assert_eq!(attribute(&file, "z_rim", "coordinates"), "mass_flow_rate");
+    assert!(!file.link_exists("pressure"), "only two columns are asked for");
 }
 
 #[test]
@@ -228,13 +172,10 @@ fn what_cannot_be_a_cube_is_refused_and_nothing_is_written() {
     let folder = ran(varied, &|number| Some(invented(number)));
     let error = folder.write(&["z_rin"]).unwrap_err().to_string();
     assert!(error.contains("did you mean z_rim?"), "{error}");
-    let table = folder.stored.table();
-    let mut layout = Layout::of(&folder.stored.study, &table).unwrap();
-    let done = done(&folder.stored, &table, &layout).unwrap();
+    let done = done(&folder.stored, &folder.stored.table()).unwrap();
     let series = Series::of(&folder.stored, &done, &["z_rim".to_owned()]).unwrap();
-    check_size(&layout, &series).unwrap();
-    layout.dimensions[0].1 = 400_000_000;
-    let error = check_size(&layout, &series).unwrap_err().to_string();
+    check_size(2, &series).unwrap();
+    let error = check_size(400_000_000, &series).unwrap_err().to_string();
     assert!(error.contains("2800000000 values over time (21 GiB)"), "{error}");
     assert!(error.contains("up to 2147483648 values (16 GiB)"), "{error}");
     // A damaged history ends the export, and the old file stays.
@@ -243,6 +184,20 @@ fn what_cannot_be_a_cube_is_refused_and_nothing_is_written() {
     files::write_atomic(&Disk, &folder.stored.results.job_path(id), b"damaged").unwrap();
     folder.write(&["z_rim"]).unwrap_err();
     assert_eq!(bytes_of(&folder.path()), old);
-    let left = Disk.list(folder.folder.path()).unwrap();
-    assert!(!left.iter().any(|path| files::is_temporary(path)), "{left:?}");
+    let found = Disk.list(folder.folder.path()).unwrap();
+    assert!(!found.iter().any(|path| files::is_temporary(path)), "{found:?}");
+}
+
+#[test]
+fn the_time_axis_has_every_sample_once() {
+    // 3 * 0.1 is larger than 0.3 by one bit.
+    let (long, short) = ([0.0, 0.1, 0.2, 3.0 * 0.1, 0.4], [0.0, 0.1, 0.2, 0.3]);
+    let times = union(&short, &long);
+    assert_eq!(times, [0.0, 0.1, 0.2, 0.3, 0.4]);
+    let times = union(&times, &[0.0, 0.1, 0.25]);
+    assert_eq!(times, [0.0, 0.1, 0.2, 0.25, 0.3, 0.4]);
+    let series = Series { times, columns: Vec::new() };
+    let placed = series.placed(&[0.0, 0.1, 0.2, 3.0 * 0.1], &[1.0, 2.0, 3.0, 4.0]);
+    let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(&placed), bits(&[1.0, 2.0, 3.0, f64::NAN, 4.0, f64::NAN]));
 }

@@ -28,7 +28,6 @@ use crate::platform::error::{Error, Result};
 
 mod content_hash;
 mod events;
-mod outline;
 pub(in crate::store) mod raw;
 mod read;
 mod sha256;
@@ -36,7 +35,6 @@ mod vtkhdf;
 mod write;
 
 pub use content_hash::{content_hash, hash_of};
-pub use outline::{ColumnOutline, Outline, outline};
 pub use read::{StoredHistory, read};
 pub use sha256::bytes_hash;
 pub use vtkhdf::StoredFrames;
