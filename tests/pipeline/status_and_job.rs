@@ -67,10 +67,9 @@ fn status_works_under_the_lock_of_another_process() {
 #[test]
 fn status_reports_damage_in_one_line_and_counts_the_rest() {
     let folder = ran();
-    fs::remove_file(file_of(&folder, &ids(&folder, "done")[3])).unwrap();
     let journal = folder.results().join("journal/000001.jsonl");
     let text = fs::read_to_string(&journal).unwrap();
-    fs::write(&journal, format!("{text}hello\n")).unwrap();
+    fs::write(&journal, format!("{text}hello\nhello\n")).unwrap();
     let status = json_of(&folder, &["status"]);
     assert_eq!((&status["done"], &status["broken"]), (&json!(16), &json!(2)));
     let said = folder.stdout(&["status"]);

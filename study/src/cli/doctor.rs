@@ -11,7 +11,7 @@ use crate::input::value::Value;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error};
 use crate::store::doctor::repair::Repaired;
-use crate::store::doctor::{self, Depth, Finding};
+use crate::store::doctor::{self, Finding};
 use crate::store::results::{RESULT_NAMES, Results};
 
 /// Arguments of `billow doctor`.
@@ -52,7 +52,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             eprintln!("billow: repaired: {}: {action}", path.display());
         }
     }
-    let health = doctor::examine(&results, Depth::Contents);
+    let health = doctor::examine(&results);
     let faults = health.faults();
     match args.output.format() {
         Format::Table => {

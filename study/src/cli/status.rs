@@ -20,7 +20,7 @@ use crate::platform::error::Result;
 use crate::platform::files::Disk;
 use crate::platform::quote;
 use crate::scene::summary;
-use crate::store::doctor::{self, Health};
+use crate::store::journal::Fault;
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
 
@@ -38,7 +38,10 @@ pub struct Args {
 /// The progress of a study.
 struct Status<'a> {
     stored: &'a Stored<'a>,
-    health: Health,
+    /// Whether another process holds the lock.
+    running: bool,
+    /// Lines of the journal that are not valid, without the one that a running process is writing.
+    faults: Vec<&'a Fault>,
     counts: Counts,
     /// Sum of the wall times of the jobs, s.
     seconds: f64,
@@ -83,11 +86,14 @@ impl<'a> Status<'a> {
                 timed += 1;
             }
         }
+        let running = stored.results.is_running()?;
+        let faults = stored.journal.faults.iter();
         let checkpoints = stored.results.checkpoints().unwrap_or_default().into_iter();
         let time_of = |id: JobId| (id.clone(), stored.results.checkpoint_time(&id));
         Ok(Self {
             stored,
-            health: doctor::examine_stored(stored),
+            running,
+            faults: faults.filter(|fault| !(fault.torn && running)).collect(),
             counts,
             seconds,
             timed,
@@ -110,12 +116,12 @@ impl<'a> Status<'a> {
     }
 
     fn json(&self) -> serde_json::Value {
-        let Self { stored, health, counts, .. } = self;
+        let Self { stored, counts, .. } = self;
         let mut json = json!({
             "study": stored.study.name,
             "question": stored.study.question,
             "results": stored.results.root().display().to_string(),
-            "running": health.running,
+            "running": self.running,
             "points": stored.planned_runs(),
             "jobs": counts.jobs(),
             "done": counts.of(JobStatus::Done),
@@ -134,10 +140,8 @@ impl<'a> Status<'a> {
             "checkpoints": self.checkpoints.iter()
                 .map(|(id, time)| json!({"job": id.as_str(), "time": time}))
                 .collect::<Vec<_>>(),
-            "broken": health.faults(),
-            "findings": health.findings.iter()
-                .map(|finding| format!("{}: {}", finding.path.display(), finding.problem))
-                .collect::<Vec<_>>(),
+            "broken": self.faults.len(),
+            "findings": self.faults.iter().map(ToString::to_string).collect::<Vec<_>>(),
         });
         json["workers"] = self.submission.json();
         json
@@ -149,8 +153,8 @@ impl<'a> Status<'a> {
     }
 
     fn text(&self) -> String {
-        let Self { stored, health, counts, .. } = self;
-        let state = match (health.running, counts.of(JobStatus::Pending)) {
+        let Self { stored, counts, .. } = self;
+        let state = match (self.running, counts.of(JobStatus::Pending)) {
             (true, _) => "running: another process holds its lock",
             (false, 0) => "finished",
             (false, _) => "not running",
@@ -248,19 +252,14 @@ impl<'a> Status<'a> {
         (!shown.is_empty()).then_some(("stored", text))
     }
 
-    /// The first fault, or that there is none.
+    /// The first fault of the journal, or that there is none.
     fn broken(&self) -> String {
-        let doctor = format!("billow doctor {}", self.stored.results.root().display());
-        let Some(first) = self.health.findings.first() else { return "nothing".to_owned() };
-        let more = match self.health.faults() {
-            0 => {
-                let notes = count(self.health.findings.len(), "note");
-                return format!("nothing; {notes}: {doctor}");
-            }
-            1 => String::new(),
-            faults => format!(", and {} more", faults - 1),
+        let Some(first) = self.faults.first() else { return "no line of the journal".to_owned() };
+        let more = match self.faults.len() - 1 {
+            0 => String::new(),
+            more => format!(", and {more} more"),
         };
-        format!("{}: {}{more}; next: {doctor}", first.path.display(), first.problem)
+        format!("{first}{more}; next: billow doctor {}", self.stored.results.root().display())
     }
 }
 

@@ -14,7 +14,6 @@ use crate::platform::files::disk_error;
 use crate::store::journal::Journal;
 use crate::store::results::Results;
 use crate::store::stored::{self, Stored};
-use crate::store::table::agreement;
 use crate::study::Study;
 
 mod histories;
@@ -31,15 +30,6 @@ const REPAIR: &str = "run `billow run` of its study, or `billow doctor --repair`
 
 /// What to do about what only a repair changes.
 const REPAIR_ONLY: &str = "run `billow doctor --repair`";
-
-/// How much is checked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Depth {
-    /// Which files exist.
-    Names,
-    /// Their contents, too.
-    Contents,
-}
 
 /// Something found.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -99,39 +89,21 @@ impl Health {
 }
 
 /// Checks a results folder.
-pub fn examine(results: &Results<'_>, depth: Depth) -> Health {
-    examined(results, &|health, paths| {
-        let study = check_study(results, health);
-        let journal = check_journal(results, health);
+pub fn examine(results: &Results<'_>) -> Health {
+    let mut health = Health::default();
+    if let Some(paths) = begin(results, &mut health) {
+        let study = check_study(results, &mut health);
+        let journal = check_journal(results, &mut health);
         let points = study.as_ref().map(|study| stored::planned(study, &journal));
         if let Some(points) = &points {
-            note_unplanned(results, points, &journal, health);
+            note_unplanned(results, points, &journal, &mut health);
         }
-        check_files(results, &journal, depth, paths, health);
+        check_files(results, &journal, &paths, &mut health);
         if let (Some(study), Some(points)) = (study, points) {
             let units = study.display_units().clone();
             let stored = Stored { results: results.clone(), study, units, journal, points };
-            check_table(&stored, health);
+            check_table(&stored, &mut health);
         }
-    })
-}
-
-/// The same at [`Depth::Names`], of results that were read, without a comparison of the table with the journal.
-pub fn examine_stored(stored: &Stored<'_>) -> Health {
-    let Stored { results, journal, points, .. } = stored;
-    examined(results, &|health, paths| {
-        note_journal(results, journal, health);
-        note_unplanned(results, points, journal, health);
-        check_files(results, journal, Depth::Names, paths, health);
-        note_missing_table(results, health);
-    })
-}
-
-/// What `check` finds in a results folder in which every file and folder is in its place.
-fn examined(results: &Results<'_>, check: &dyn Fn(&mut Health, &[PathBuf])) -> Health {
-    let mut health = Health::default();
-    if let Some(paths) = begin(results, &mut health) {
-        check(&mut health, &paths);
         health.findings.sort_by_key(|finding| !finding.fault);
     }
     let root = results.root().display();
@@ -186,14 +158,8 @@ fn note_unplanned(results: &Results<'_>, points: &[Point], journal: &Journal, he
 }
 
 /// Checks the files beside study.json, journals and table.
-fn check_files(
-    results: &Results<'_>,
-    journal: &Journal,
-    depth: Depth,
-    paths: &[PathBuf],
-    health: &mut Health,
-) {
-    histories::check(results, journal, depth, health);
+fn check_files(results: &Results<'_>, journal: &Journal, paths: &[PathBuf], health: &mut Health) {
+    histories::check(results, journal, health);
     let is_known = |id: &JobId| {
         let record = journal.records.get(id);
         record.is_some_and(|record| record.file_hash.is_some())
@@ -271,16 +237,6 @@ fn note_journal(results: &Results<'_>, journal: &Journal, health: &mut Health) {
     }
 }
 
-/// Says that no run has written the table yet.
-fn note_missing_table(results: &Results<'_>, health: &mut Health) {
-    let path = results.table_path();
-    if !path.exists() && !health.running {
-        let next =
-            "nothing: `billow table` reads the journal; `billow run` of its study writes the table";
-        health.note(&path, "no table yet", next);
-    }
-}
-
 /// Compares the summary table with plan and journal.
 fn check_table(stored: &Stored<'_>, health: &mut Health) {
     let path = stored.results.table_path();
@@ -288,7 +244,13 @@ fn check_table(stored: &Stored<'_>, health: &mut Health) {
         "run `billow run` of its study, or `billow doctor --repair`: it writes the table again";
     let table = match stored.results.read_table() {
         Ok(table) => table,
-        Err(_) if !path.exists() => return note_missing_table(&stored.results, health),
+        Err(_) if !path.exists() => {
+            let next = "nothing: `billow table` reads the journal; `billow run` of its study writes the table";
+            if !health.running {
+                health.note(&path, "no table yet", next);
+            }
+            return;
+        }
         Err(Error::Disk { path, problem }) => {
             let problem = problem.split('\n').next().unwrap_or_default();
             let other = problem.contains("this program reads version");
@@ -297,16 +259,26 @@ fn check_table(stored: &Stored<'_>, health: &mut Health) {
         }
         Err(other) => return health.error(&path, &other),
     };
-    let different = agreement::different_rows(&table, &stored.table());
-    if agreement::is_of_other_physics(&table, &stored.journal.records) {
+    if is_of_other_physics(stored) {
         let next = "nothing; `billow run` of its study computes its jobs again";
         health.note(&path, "rows of another physics version", next);
-    } else if different > 0 {
-        let problem = format!("differs from the journal in {different} rows");
-        if health.running {
-            health.note(&path, problem, "nothing; the running command writes it from time to time");
-        } else {
-            health.fault(&path, problem, write_again);
-        }
+        return;
     }
+    let different = stored.table().different_rows(&table);
+    if different == 0 {
+        return;
+    }
+    let problem = format!("differs from the journal in {different} rows");
+    if health.running {
+        health.note(&path, problem, "nothing; the running command writes it from time to time");
+    } else {
+        health.fault(&path, problem, write_again);
+    }
+}
+
+/// Whether every record is one of another physics version, so that no row of the plan has a result.
+fn is_of_other_physics(stored: &Stored<'_>) -> bool {
+    let records = &stored.journal.records;
+    let others = stored::other_physics(&stored.points, records);
+    !records.is_empty() && others.values().sum::<usize>() == records.len()
 }

@@ -4,14 +4,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{histories, kinds};
+use super::{histories, is_of_other_physics, kinds};
 use crate::job::JobId;
 use crate::platform::error::Result;
 use crate::store::attempts;
 use crate::store::journal::{Journal, Writer};
 use crate::store::results::Results;
 use crate::store::stored::Stored;
-use crate::store::table::agreement;
 
 /// Something that was repaired.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -74,8 +73,7 @@ pub fn repair(results: &Results<'_>) -> Result<Vec<Repaired>> {
 fn repair_table(stored: &Stored<'_>) -> Result<bool> {
     let (results, table) = (&stored.results, stored.table());
     if let Ok(found) = results.read_table()
-        && (agreement::is_of_other_physics(&found, &stored.journal.records)
-            || agreement::different_rows(&found, &table) == 0)
+        && (is_of_other_physics(stored) || table.different_rows(&found) == 0)
     {
         return Ok(false);
     }

@@ -17,7 +17,6 @@ use crate::job::row::{COLUMNS, CellType, Cells, ColumnId};
 use crate::job::{JobId, Status};
 use crate::store::journal::{self, Record};
 
-pub mod agreement;
 pub mod extrapolated;
 mod judged;
 mod mesh_errors;
@@ -120,6 +119,26 @@ impl Table {
             column.shown = units.of(&column.name, &column.unit);
         }
         self
+    }
+
+    /// Number of rows in which another table differs; all rows when its columns differ. NaN is the same as NaN.
+    pub fn different_rows(&self, other: &Self) -> usize {
+        let names = |table: &Self| -> Vec<String> {
+            table.columns.iter().map(|column| column.name.clone()).collect()
+        };
+        let rows = self.rows().max(other.rows());
+        if self.rows() != other.rows() || names(self) != names(other) {
+            return rows;
+        }
+        let same = |a: &Value, b: &Value| match (a, b) {
+            (Value::Number(a), Value::Number(b)) => {
+                a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
+            }
+            _ => a == b,
+        };
+        let pairs = || self.columns.iter().zip(&other.columns);
+        let differs = |row: &usize| pairs().any(|(a, b)| !same(&a.cells[*row], &b.cells[*row]));
+        (0..rows).filter(differs).count()
     }
 
     /// Number of rows.
