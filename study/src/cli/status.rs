@@ -20,7 +20,7 @@ use crate::platform::error::Result;
 use crate::platform::files::Disk;
 use crate::platform::quote;
 use crate::scene::summary;
-use crate::store::journal::Fault;
+use crate::store::journal::{Fault, Record};
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
 
@@ -88,7 +88,10 @@ impl<'a> Status<'a> {
         }
         let running = stored.results.is_running()?;
         let faults = stored.journal.faults.iter();
+        // A process that died may have left that of a job that has ended.
+        let is_open = |id: &JobId| stored.journal.records.get(id).is_none_or(Record::reached_limit);
         let checkpoints = stored.results.checkpoints().unwrap_or_default().into_iter();
+        let checkpoints = checkpoints.filter(is_open);
         let time_of = |id: JobId| (id.clone(), stored.results.checkpoint_time(&id));
         Ok(Self {
             stored,

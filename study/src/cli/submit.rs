@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use super::options::{OutputOptions, ResultsOption, SetOption};
 use super::print::{count, duration};
 use super::{Format, output_error, results};
-use crate::cluster::notation;
 use crate::cluster::script::{Needs, Scripts};
 use crate::cluster::slurm;
 use crate::cluster::submission::{self, Queued};
@@ -35,22 +34,19 @@ const MAX_ESTIMATE_RATIO: f64 = 0.4;
 pub struct Args {
     /// Study file, or a results folder.
     study: PathBuf,
-    /// Partition of the tasks [default: that of the cluster].
-    #[arg(long, value_name = "NAME")]
-    partition: Option<String>,
-    /// Wall time of a task, as in --time "2 h" or 2:00:00. A task stops before its end; what it has not finished is in the next submission.
+    /// Wall time of a task, as in --time "2 h". A task stops before its end; what it has not finished is in the next submission.
     #[arg(long, value_name = "TIME", default_value = "1 h")]
     time: String,
     /// Cores of a task, and number of jobs that run side by side in it.
     #[arg(long, value_name = "N", default_value_t = 1)]
     cpus: usize,
-    /// Memory of a task, as in --mem "4 GB" or 4G [default: the estimate of its largest jobs].
+    /// Memory of a task, as in --mem "4 GB" [default: the estimate of its largest jobs].
     #[arg(long, value_name = "MEMORY")]
     mem: Option<String>,
     /// Number of tasks [default: tasks of about ten minutes].
     #[arg(long, value_name = "N")]
     tasks: Option<usize>,
-    /// Give this option to sbatch too, as in --sbatch=--account=film; can be repeated.
+    /// Give this option to sbatch too, as in --sbatch=--partition=short; can be repeated.
     #[arg(long, value_name = "OPTION", allow_hyphen_values = true)]
     sbatch: Vec<String>,
     /// Print the scripts; write and submit nothing.
@@ -183,13 +179,7 @@ fn tasks(args: &Args, missing: &[Job]) -> Result<Tasks> {
         Some(text) => quantity("--mem", text, Dimension::Memory)? as u64,
         None => PROGRAM_MEMORY + largest(&memory, cores),
     };
-    let needs = Needs {
-        partition: args.partition.clone(),
-        wall_time,
-        cores,
-        memory,
-        options: args.sbatch.clone(),
-    };
+    let needs = Needs { wall_time, cores, memory, options: args.sbatch.clone() };
     let number = if missing.is_empty() { 0 } else { number };
     Ok(Tasks { number, needs, jobs: missing.len(), seconds })
 }
@@ -213,18 +203,13 @@ fn largest(sizes: &BTreeMap<u64, usize>, cores: usize) -> u64 {
     all.take(cores).sum()
 }
 
-/// A quantity of the command line, in SI, above zero: with its unit, or as Slurm writes it.
+/// A quantity of the command line, in SI, above zero.
 fn quantity(option: &str, text: &str, dimension: Dimension) -> Result<f64> {
-    let is_time = dimension == Dimension::Time;
-    let of_slurm =
-        if is_time { notation::time(text.trim()) } else { notation::memory(text.trim()) };
-    let read = of_slurm.or_else(|| units::parse(text, dimension).ok());
+    let read = units::parse(text, dimension).ok();
     read.filter(|value| *value > 0.0 && value.is_finite()).ok_or_else(|| {
-        let [example, of_slurm] = if is_time { ["2 h", "2:00:00"] } else { ["4 GB", "4G"] };
-        let allowed = format!(
-            "{} above zero with its unit, as in {option} \"{example}\", or as Slurm writes it, as in {option} {of_slurm}",
-            dimension.name()
-        );
+        let example = if dimension == Dimension::Time { "2 h" } else { "4 GB" };
+        let name = dimension.name();
+        let allowed = format!("{name} above zero with its unit, as in {option} \"{example}\"");
         Error::invalid_option(option, text, "is no such quantity", allowed, "")
     })
 }

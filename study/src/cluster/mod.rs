@@ -11,7 +11,6 @@
 //! A task is a run like any other, so it may be killed and started again. What is missing after the merge is in the next
 //! submission.
 
-pub mod notation;
 pub mod script;
 pub mod slurm;
 pub mod submission;

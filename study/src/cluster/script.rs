@@ -12,8 +12,6 @@ const WARNING: u32 = 60;
 /// What the tasks of a submission need.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Needs {
-    /// Partition; `None` for the default one of the cluster.
-    pub partition: Option<String>,
     /// Wall time of a task, s.
     pub wall_time: f64,
     /// Cores of a task.
@@ -87,9 +85,6 @@ impl Scripts<'_> {
         option("--cpus-per-task", &cores.to_string());
         option("--mem", &format!("{}M", memory.div_ceil(1 << 20)));
         option("--time", &slurm_time(wall_time));
-        if let Some(partition) = &self.needs.partition {
-            option("--partition", partition);
-        }
         for option in &self.needs.options {
             let _ = writeln!(text, "#SBATCH {option}");
         }
@@ -126,11 +121,10 @@ mod tests {
 
     fn needs() -> Needs {
         Needs {
-            partition: Some("short".to_owned()),
             wall_time: 5400.0,
             cores: 2,
             memory: 3 << 30,
-            options: vec!["--account=film".to_owned()],
+            options: vec!["--account=film".to_owned(), "--partition=short".to_owned()],
         }
     }
 

@@ -20,7 +20,7 @@ pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&
             let candidate = known.to_lowercase();
             // The beginning of a name stands for the whole name.
             let begins = name.len() >= MIN_BEGINNING && candidate.starts_with(&name);
-            let edits = distance(&name, &candidate);
+            let edits = strsim::osa_distance(&name, &candidate);
             // A name of one or two letters with every letter replaced is another name.
             let kept = edits < name.chars().count().max(candidate.chars().count());
             (if begins { edits.min(max_distance) } else { edits }, kept, known)
@@ -38,26 +38,6 @@ pub fn did_you_mean<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Opt
 /// What a problem says of the nearest name: "; did you mean thickness?", or nothing.
 pub fn or_nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
     did_you_mean(name, known).map_or_else(String::new, |question| format!("; {question}"))
-}
-
-/// Number of edits (insert, delete, replace, swap two neighbours) from one word to another: the
-/// optimal string alignment distance.
-fn distance(a: &str, b: &str) -> usize {
-    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
-    let mut before = vec![0; b.len() + 1];
-    let mut last: Vec<usize> = (0..=b.len()).collect();
-    for i in 1..=a.len() {
-        let mut row = vec![i; b.len() + 1];
-        for j in 1..=b.len() {
-            let replaced = last[j - 1] + usize::from(a[i - 1] != b[j - 1]);
-            row[j] = replaced.min(last[j] + 1).min(row[j - 1] + 1);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                row[j] = row[j].min(before[j - 2] + 1);
-            }
-        }
-        before = std::mem::replace(&mut last, row);
-    }
-    last[b.len()]
 }
 
 #[cfg(test)]

@@ -22,11 +22,6 @@ impl FailingFiles {
         Self { failing_from, kind, operations: Arc::default() }
     }
 
-    /// No operation fails; they are only counted.
-    pub fn counting() -> Self {
-        Self::new(u64::MAX, io::ErrorKind::Other)
-    }
-
     /// Number of changing operations so far.
     pub fn operations(&self) -> u64 {
         self.operations.load(Ordering::SeqCst)

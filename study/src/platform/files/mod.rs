@@ -20,7 +20,6 @@ use crate::platform::nearest::nearest;
 mod atomic;
 mod disk;
 pub mod failing;
-pub mod scratch;
 
 pub use atomic::{
     build_output, is_temporary, remove_stale_files, remove_temporary_files, write_atomic,

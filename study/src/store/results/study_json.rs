@@ -196,15 +196,7 @@ impl Results<'_> {
         Ok(())
     }
 
-    /// Whether study.json has the text of this study, to the last byte.
-    pub fn is_written_for(&self, study: &Study) -> bool {
-        let text = study_text(&study.name, &study.resolved());
-        let stored = self.files().read(&self.study_path());
-        stored.is_ok_and(|stored| text.is_ok_and(|text| stored == text.as_bytes()))
-    }
-
-    /// Whether the folder was last run for this resolved study. A study.json with old names of keys
-    /// is compared by its meaning. The units in which quantities are shown, and the limits
+    /// Whether the folder was last run for this resolved study. The units in which quantities are shown, and the limits
     /// of jobs, do not count.
     ///
     /// # Errors

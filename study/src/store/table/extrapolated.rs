@@ -21,7 +21,6 @@ use super::{Column, Table};
 use crate::accuracy::promised::promise;
 use crate::accuracy::{Features, MeshErrors, Method, PROMISED, Promised};
 use crate::input::keys::numerical::MESH_PARAMETER;
-use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::JobId;
 use crate::job::point::Point;
@@ -110,14 +109,7 @@ impl Table {
             let unit = measure.column().unit;
             let column = |name: String, meaning: String, of: fn(Extrapolated) -> Option<f64>| {
                 let cells = cells.iter().map(|cell| of(*cell).map_or(Value::Null, Value::Number));
-                Column {
-                    name,
-                    cell_type: CellType::Number,
-                    unit: unit.to_owned(),
-                    shown: DisplayUnit::si(unit),
-                    meaning,
-                    cells: cells.collect(),
-                }
+                Column::new(name, (CellType::Number, unit), meaning, cells.collect())
             };
             let measure = measure.name();
             let [value, error] = names(measure);

@@ -5,7 +5,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Column, Table};
 use crate::input::keys::numerical::is_numerical;
-use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::result_limit::{ResultLimit, Safety};
@@ -57,14 +56,8 @@ impl Table {
             let judged = limit.judge(self.status(row)?, value)?;
             Some(Value::Number(judged.margin))
         };
-        Column {
-            name: limit.column_name(),
-            cell_type: CellType::Number,
-            unit: "1".to_owned(),
-            shown: DisplayUnit::si("1"),
-            meaning: limit.margin_meaning(),
-            cells: (0..self.rows()).map(|row| margin(row).unwrap_or(Value::Null)).collect(),
-        }
+        let cells = (0..self.rows()).map(|row| margin(row).unwrap_or(Value::Null)).collect();
+        Column::new(limit.column_name(), (CellType::Number, "1"), limit.margin_meaning(), cells)
     }
 
     /// The parameters that are numerical choices.
@@ -120,14 +113,7 @@ impl Table {
 /// A derived column with these cells.
 fn derived(column: DerivedColumn, cells: Vec<Value>) -> Column {
     let row = column.row();
-    Column {
-        name: row.name.to_owned(),
-        cell_type: row.cell_type,
-        unit: row.unit.to_owned(),
-        shown: DisplayUnit::si(row.unit),
-        meaning: row.meaning.to_owned(),
-        cells,
-    }
+    Column::new(row.name, (row.cell_type, row.unit), row.meaning, cells)
 }
 
 #[cfg(test)]

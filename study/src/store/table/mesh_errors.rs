@@ -13,7 +13,6 @@ use super::same_job::PointRow;
 use crate::accuracy::{
     Features, MeshErrors, Method, NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED,
 };
-use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::row::{CellType, Cells, ColumnId};
@@ -92,25 +91,14 @@ pub(super) fn columns(points: &[PointRow<'_>], rows: &[Cow<'_, Cells>]) -> Vec<C
         .iter()
         .enumerate()
         .map(|(index, promised)| {
-            let unit = promised.measure.column().unit;
-            Column {
-                name: promised.error_column.to_owned(),
-                cell_type: CellType::Number,
-                unit: unit.to_owned(),
-                shown: DisplayUnit::si(unit),
-                meaning: promised.meaning(),
-                cells: all.iter().map(|row| number(row.errors[index])).collect(),
-            }
+            let kind = (CellType::Number, promised.measure.column().unit);
+            let cells = all.iter().map(|row| number(row.errors[index])).collect();
+            Column::new(promised.error_column, kind, promised.meaning(), cells)
         })
         .collect();
-    columns.push(Column {
-        name: NO_ERROR_REASON.to_owned(),
-        cell_type: CellType::Text,
-        unit: String::new(),
-        shown: DisplayUnit::si(""),
-        meaning: NO_ERROR_REASON_MEANING.to_owned(),
-        cells: all.into_iter().map(|row| row.reason.map_or(Value::Null, Value::Text)).collect(),
-    });
+    let reasons = all.into_iter().map(|row| row.reason.map_or(Value::Null, Value::Text)).collect();
+    let kind = (CellType::Text, "");
+    columns.push(Column::new(NO_ERROR_REASON, kind, NO_ERROR_REASON_MEANING, reasons));
     columns
 }
 

@@ -56,16 +56,21 @@ pub struct Column {
 }
 
 impl Column {
+    /// A column, shown in SI.
+    pub fn new(
+        name: impl Into<String>,
+        (cell_type, unit): (CellType, &str),
+        meaning: impl Into<String>,
+        cells: Vec<Value>,
+    ) -> Self {
+        let (name, meaning) = (name.into(), meaning.into());
+        let (unit, shown) = (unit.to_owned(), DisplayUnit::si(unit));
+        Self { name, cell_type, unit, shown, meaning, cells }
+    }
+
     /// A column without unit and meaning.
     pub fn plain(name: &str, cell_type: CellType, cells: Vec<Value>) -> Self {
-        Self {
-            name: name.to_owned(),
-            cell_type,
-            unit: String::new(),
-            shown: DisplayUnit::si(""),
-            meaning: String::new(),
-            cells,
-        }
+        Self::new(name, (cell_type, ""), "", cells)
     }
 }
 
@@ -77,17 +82,9 @@ impl Table {
         unit: &dyn Fn(&str) -> String,
     ) -> Self {
         let points = &same_job::point_rows(points);
-        let mut columns = vec![Column {
-            name: "job".to_owned(),
-            cell_type: CellType::Text,
-            unit: String::new(),
-            shown: DisplayUnit::si(""),
-            meaning: "job id: hash of all that decides the result".to_owned(),
-            cells: points
-                .iter()
-                .map(|row| Value::Text(row.point.job.id.as_str().to_owned()))
-                .collect(),
-        }];
+        let ids = points.iter().map(|row| Value::Text(row.point.job.id.as_str().to_owned()));
+        let meaning = "job id: hash of all that decides the result";
+        let mut columns = vec![Column::new("job", (CellType::Text, ""), meaning, ids.collect())];
         columns.extend(parameter_columns(points, unit));
         let parameters: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
 
@@ -98,14 +95,10 @@ impl Table {
         let rows: Vec<Cow<'_, Cells>> = points.iter().map(row).collect();
         for column in COLUMNS {
             let shadowed = parameters.iter().any(|name| name == column.name);
-            columns.push(Column {
-                name: format!("{}{}", column.name, if shadowed { RESOLVED } else { "" }),
-                cell_type: column.cell_type,
-                unit: column.unit.to_owned(),
-                shown: DisplayUnit::si(column.unit),
-                meaning: column.meaning.to_owned(),
-                cells: rows.iter().map(|row| row.get(column.id).clone()).collect(),
-            });
+            let name = format!("{}{}", column.name, if shadowed { RESOLVED } else { "" });
+            let cells = rows.iter().map(|row| row.get(column.id).clone()).collect();
+            let kind = (column.cell_type, column.unit);
+            columns.push(Column::new(name, kind, column.meaning, cells));
         }
         columns.extend(mesh_errors::columns(points, &rows));
         columns.push(same_job::column(points));
@@ -221,15 +214,8 @@ fn parameter_columns(points: &[PointRow<'_>], unit: &dyn Fn(&str) -> String) -> 
             })
             .collect();
         let cell_type = common_type(&cells);
-        let unit = unit(name);
-        Column {
-            name: (*name).to_owned(),
-            cell_type,
-            shown: DisplayUnit::si(&unit),
-            unit,
-            meaning: "parameter of the study".to_owned(),
-            cells: cells.into_iter().map(|cell| convert(cell_type, cell)).collect(),
-        }
+        let cells = cells.into_iter().map(|cell| convert(cell_type, cell)).collect();
+        Column::new(*name, (cell_type, &unit(name)), "parameter of the study", cells)
     };
     names.iter().map(column).collect()
 }

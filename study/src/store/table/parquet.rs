@@ -18,7 +18,6 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::{Column, Table};
-use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::row::CellType;
 use crate::platform::error::{Error, Result};
@@ -223,12 +222,7 @@ fn from_polars(
         })
     });
     let unit = label.map_or("", |label| label.unit.as_str());
-    Ok(Column {
-        name: column.name().to_string(),
-        cell_type,
-        unit: unit.to_owned(),
-        shown: DisplayUnit::si(unit),
-        meaning: label.map_or_else(String::new, |label| label.meaning.clone()),
-        cells: cells.collect::<std::result::Result<_, String>>()?,
-    })
+    let meaning = label.map_or("", |label| label.meaning.as_str());
+    let cells = cells.collect::<std::result::Result<_, String>>()?;
+    Ok(Column::new(column.name().as_str(), (cell_type, unit), meaning, cells))
 }

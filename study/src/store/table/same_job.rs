@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 
 use super::{Column, Table};
-use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Parameters;
 use crate::job::point::{self, Point};
@@ -41,14 +40,7 @@ pub(super) fn column(rows: &[PointRow<'_>]) -> Column {
     for job in rows.chunk_by(|a, b| std::ptr::eq(a.point, b.point)) {
         cells.extend((0..job.len()).map(|row| cell(job, row)));
     }
-    Column {
-        name: SAME_JOB_AS.to_owned(),
-        cell_type: CellType::Text,
-        unit: String::new(),
-        shown: DisplayUnit::si(""),
-        meaning: SAME_JOB_AS_MEANING.to_owned(),
-        cells,
-    }
+    Column::new(SAME_JOB_AS, (CellType::Text, ""), SAME_JOB_AS_MEANING, cells)
 }
 
 /// The other rows of a job, as seen from one of them.

@@ -9,8 +9,8 @@ use std::time::{Duration, SystemTime};
 use billow_solver::platform::seal;
 
 use super::super::mutations::bytes;
+use crate::harness::journal;
 use crate::harness::random::Random;
-use crate::harness::{journal, place};
 
 /// Bytes that a disk fills with zeros after a power cut.
 const BLOCK: usize = 512;
