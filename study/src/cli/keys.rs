@@ -55,8 +55,6 @@ const COLUMN: &str = "column of the table";
 const LINE_WIDTH: usize = 96;
 /// Names printed when a word is not found (chosen: one line).
 const MAX_NEAREST: usize = 3;
-/// Keys named in the note about further meanings, at most (chosen: two lines).
-const MAX_FURTHER: usize = 6;
 /// Letters of a word that is searched within other words, at least: a shorter one is in nearly every name.
 const MIN_PART: usize = 3;
 
@@ -127,54 +125,29 @@ fn described(kind: &str, entry: &Entry) -> String {
     lines.join("\n    ") + "\n"
 }
 
-/// The keys with this name; else those with the word in their name; else the columns of the table with it in
-/// theirs; else the keys with it in their meaning. Notes go to stderr.
+/// The keys with this name, else those with the word in their name, else the columns of the table with it in theirs,
+/// else the keys with it in their meaning.
 fn search(file: FileKind, word: &str) -> Result<Vec<(&'static str, Entry)>> {
     let lower = word.trim().to_lowercase();
-    let keys = entries(file);
-    // Another case of one letter is another key: N panels, n subdivisions.
-    let exact = |entry: &Entry| entry.path == word || leaf(&entry.path) == word;
-    let exact_any_case = |entry: &Entry| leaf(&entry.path).to_lowercase() == lower;
-    let in_name = |entry: &Entry| has_word(&entry.path, &lower);
-    let in_meaning = |entry: &Entry| has_word(&entry.meaning, &lower);
-    let tests: [&dyn Fn(&Entry) -> bool; 3] = [&exact, &exact_any_case, &in_name];
-    let of_file =
-        |entries: Vec<Entry>| entries.into_iter().map(|entry| (file.name(), entry)).collect();
-    for test in tests {
-        let (found, others): (Vec<Entry>, Vec<Entry>) = keys.iter().cloned().partition(test);
-        if found.is_empty() {
-            continue;
-        }
-        let further = others.iter().filter(|entry| in_meaning(entry));
-        let names: Vec<&str> = further.map(|entry| entry.path.as_str()).collect();
-        if !names.is_empty() {
-            let more = if names.len() > MAX_FURTHER { ", …" } else { "" };
-            let shown = names[..names.len().min(MAX_FURTHER)].join(", ");
-            eprintln!("billow: also in the meaning of {shown}{more}");
-        }
-        return Ok(of_file(found));
-    }
-    let columns = columns();
+    let (keys, columns) = (entries(file), columns());
     let is_long = lower.chars().count() >= MIN_PART;
-    let in_column = |entry: &Entry| is_long && entry.path.contains(&lower);
-    for test in [&|entry: &Entry| entry.path == lower, &in_column as &dyn Fn(&Entry) -> bool] {
-        let found: Vec<Entry> = columns.iter().filter(|entry| test(entry)).cloned().collect();
-        let names: Vec<&str> = found.iter().map(|entry| entry.path.as_str()).collect();
-        if let [first, others @ ..] = &*names {
-            let are = if others.is_empty() {
-                "is a column of the table, not a key"
-            } else {
-                "are columns of the table, not keys"
-            };
-            eprintln!("billow: {} {are}: billow table --columns {first}", names.join(", "));
-            return Ok(found.into_iter().map(|entry| (COLUMN, entry)).collect());
+    type Test<'a> = &'a dyn Fn(&Entry) -> bool;
+    // Another case of one letter is another key: N panels, n subdivisions.
+    let tests: [(&'static str, &[Entry], Test<'_>); 6] = [
+        (file.name(), &keys, &|entry| entry.path == word || leaf(&entry.path) == word),
+        (file.name(), &keys, &|entry| leaf(&entry.path).to_lowercase() == lower),
+        (file.name(), &keys, &|entry| has_word(&entry.path, &lower)),
+        (COLUMN, &columns, &|entry| entry.path == lower),
+        (COLUMN, &columns, &|entry| is_long && entry.path.contains(&lower)),
+        (file.name(), &keys, &|entry| has_word(&entry.meaning, &lower)),
+    ];
+    for (kind, all, test) in tests {
+        let found: Vec<_> = all.iter().filter(|entry| test(entry)).cloned().collect();
+        if !found.is_empty() {
+            return Ok(found.into_iter().map(|entry| (kind, entry)).collect());
         }
     }
-    let meant: Vec<Entry> = keys.iter().filter(|entry| in_meaning(entry)).cloned().collect();
-    if meant.is_empty() {
-        return Err(not_found(file, word, &keys, &columns).into());
-    }
-    Ok(of_file(meant))
+    Err(not_found(file, word, &keys, &columns).into())
 }
 
 /// The last part of a path.
