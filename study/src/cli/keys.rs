@@ -125,13 +125,15 @@ fn described(kind: &str, entry: &Entry) -> String {
     lines.join("\n    ") + "\n"
 }
 
+/// Whether an entry is found.
+type Test<'a> = &'a dyn Fn(&Entry) -> bool;
+
 /// The keys with this name, else those with the word in their name, else the columns of the table with it in theirs,
 /// else the keys with it in their meaning.
 fn search(file: FileKind, word: &str) -> Result<Vec<(&'static str, Entry)>> {
     let lower = word.trim().to_lowercase();
     let (keys, columns) = (entries(file), columns());
     let is_long = lower.chars().count() >= MIN_PART;
-    type Test<'a> = &'a dyn Fn(&Entry) -> bool;
     // Another case of one letter is another key: N panels, n subdivisions.
     let tests: [(&'static str, &[Entry], Test<'_>); 6] = [
         (file.name(), &keys, &|entry| entry.path == word || leaf(&entry.path) == word),

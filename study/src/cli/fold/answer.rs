@@ -61,7 +61,7 @@ pub(super) fn json(design: &FoldDesign, answer: &Answer) -> Json {
     }
     match answer {
         Ok(pattern) => {
-            json["storeys"] = (0..design.storeys).map(|at| storey(pattern, at)).collect()
+            json["storeys"] = (0..design.storeys).map(|at| storey(pattern, at)).collect();
         }
         Err((reason, nearest)) => {
             json["reason"] = reason.as_str().into();

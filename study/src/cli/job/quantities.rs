@@ -68,7 +68,9 @@ pub(super) fn rows(job: &Inspected, in_units: bool) -> Vec<Vec<Value>> {
         Err(error) => rows.push(row("scene", "error", Value::Text(error.to_string()), "", "")),
     }
     if in_units {
-        rows.iter_mut().for_each(|row| show_in_units(row, job));
+        for row in &mut rows {
+            show_in_units(row, job);
+        }
     }
     rows
 }

@@ -193,7 +193,7 @@ impl Ladder {
             },
         };
         let erected = capsule.equilibrium_at.is_none();
-        let found = match self.settled(capsule, overpressure, continues) {
+        let found = match Self::settled(capsule, overpressure, continues) {
             Err(NoReference::NoEquilibrium { .. }) if !erected => {
                 self.alone(overpressure, continues)
             }
@@ -224,12 +224,11 @@ impl Ladder {
         continues: Continues<'_>,
     ) -> Result<(StaticShape, Field), NoReference> {
         let capsule = self.capsule()?.clone();
-        self.settled(capsule, overpressure, continues)
+        Self::settled(capsule, overpressure, continues)
     }
 
     /// Shape and positions of the equilibrium of a capsule at this overpressure (Pa).
     fn settled(
-        &mut self,
         mut capsule: Erected,
         overpressure: f64,
         continues: Continues<'_>,
