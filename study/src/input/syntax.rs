@@ -33,7 +33,6 @@ const VALUES: &str =
     "a value is a number, a text in straight double quotes, true, false, null, [ ] or { }";
 const CLOSE_TEXT: &str = "write the quote at the end of the text";
 
-/// A fault of a text.
 #[derive(Debug)]
 struct Fault {
     /// Its place, a byte of the text.

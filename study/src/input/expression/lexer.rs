@@ -4,7 +4,6 @@ use super::ExpressionError;
 use super::node::Operator;
 use crate::input::units::{is_unit, number_length};
 
-/// A token.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Token {
     Number(f64),

@@ -293,7 +293,6 @@ impl Key {
     }
 }
 
-/// The names of words.
 fn names(words: &'static [Word]) -> impl Iterator<Item = &'static str> {
     words.iter().map(|word| word.name)
 }

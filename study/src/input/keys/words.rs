@@ -38,7 +38,6 @@ pub(super) const fn plain(name: &'static str) -> Word {
     Word { name, meaning: "" }
 }
 
-/// A word with its meaning.
 pub(super) const fn explained(name: &'static str, meaning: &'static str) -> Word {
     Word { name, meaning }
 }

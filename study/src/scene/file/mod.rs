@@ -204,7 +204,6 @@ impl SceneFile {
     }
 }
 
-/// Refuses a study file.
 fn refuse_study(tree: &Json, file: &str, source: &Source) -> Result<()> {
     let is_study = tree.get("format") == Some(&Json::Text("billow-study".to_owned()));
     if !is_study && tree.get("grid").is_none() {

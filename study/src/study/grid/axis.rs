@@ -19,7 +19,6 @@ const AXIS: &str = "a list of values; {\"from\", \"to\", and \"steps\" or \"step
 const STRATEGY: usize = position(KEYS, "strategy");
 
 impl Grid {
-    /// Reads an axis of one column.
     pub(in crate::study) fn read_axis(
         &mut self,
         column: usize,

@@ -27,7 +27,6 @@ pub(super) struct Context<'a> {
     pub max_points: usize,
 }
 
-/// What a study varies.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Grid {
     /// Every key varied on an axis or by a point, in the order of the file.
@@ -55,7 +54,6 @@ pub(super) struct Axis {
     pub kind: AxisKind,
 }
 
-/// What the values of an axis are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum AxisKind {
     /// Those of the file.
