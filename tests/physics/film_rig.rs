@@ -107,7 +107,7 @@ pub fn explicit(film: &FilmSimulation) -> StoredExplicit {
     let StoredIntegrator::Explicit(explicit) = film.stored().expect("a film").integrator else {
         panic!("not central differences")
     };
-    explicit
+    *explicit
 }
 
 pub fn free() -> Phase {

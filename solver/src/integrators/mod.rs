@@ -81,7 +81,7 @@ pub const fn entry(kind: IntegratorKind) -> &'static IntegratorEntry {
 #[serde(rename_all = "snake_case")]
 pub enum StoredIntegrator {
     /// Of [`explicit`].
-    Explicit(explicit::StoredExplicit),
+    Explicit(Box<explicit::StoredExplicit>),
     /// Of [`implicit`].
     Implicit(Box<implicit::StoredImplicit>),
     /// Of [`hybrid`].
@@ -102,7 +102,7 @@ impl StoredIntegrator {
     pub fn resume(self, system: &FilmSystem, state: &FilmState, cfl: f64) -> Box<dyn Integrator> {
         match self {
             Self::Explicit(stored) => {
-                Box::new(explicit::Explicit::resume(system, state, stored, cfl))
+                Box::new(explicit::Explicit::resume(system, state, *stored, cfl))
             }
             Self::Implicit(stored) => Box::new(implicit::Implicit::resume(system, state, *stored)),
             Self::Hybrid(stored) => Box::new(hybrid::Hybrid::resume(system, state, *stored, cfl)),

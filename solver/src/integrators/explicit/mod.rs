@@ -344,11 +344,11 @@ impl Integrator for Explicit {
     }
 
     fn stored(&self) -> Option<StoredIntegrator> {
-        Some(StoredIntegrator::Explicit(StoredExplicit {
+        Some(StoredIntegrator::Explicit(Box::new(StoredExplicit {
             motion: self.motion.clone(),
             histories: self.workspace.histories.clone(),
             path_length: self.workspace.path_length(),
-        }))
+        })))
     }
 
     fn boxed(&self) -> Box<dyn Integrator> {

@@ -133,7 +133,7 @@ impl Hybrid {
     pub fn resume(system: &FilmSystem, state: &FilmState, stored: StoredHybrid, cfl: f64) -> Self {
         let active = match stored.active {
             StoredIntegrator::Explicit(stored) => {
-                Active::Explicit(Box::new(Explicit::resume(system, state, stored, cfl)))
+                Active::Explicit(Box::new(Explicit::resume(system, state, *stored, cfl)))
             }
             StoredIntegrator::Implicit(stored) => {
                 Active::Implicit(Box::new(Implicit::resume(system, state, *stored)))

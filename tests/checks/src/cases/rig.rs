@@ -84,7 +84,7 @@ pub fn advance(film: &mut FilmSimulation, target: f64, phase: &Phase) -> Result<
 /// If the film has another integrator.
 pub fn explicit(film: &FilmSimulation) -> StoredExplicit {
     match film.stored().map(|stored| stored.integrator) {
-        Some(StoredIntegrator::Explicit(explicit)) => explicit,
+        Some(StoredIntegrator::Explicit(explicit)) => *explicit,
         _ => unreachable!("reference cases use central differences, which can be stored"),
     }
 }
