@@ -1,4 +1,4 @@
-//! No avoided word in sources, scripts or documents: `words.txt` is the list.
+//! No avoided word in sources, scripts or documents: `words.txt` is the list. Documents keep their limits of length.
 
 use std::path::PathBuf;
 
@@ -77,7 +77,9 @@ fn looked_at() -> Vec<PathBuf> {
         "DESIGN.md",
         "CONTRIBUTING.md",
         "results/README.md",
+        "results/paper/README.md",
         "results/pareto/README.md",
+        "results/stability/README.md",
         "Cargo.toml",
         "Makefile",
     ];
@@ -114,4 +116,43 @@ fn words_are_matched_whole_and_contexts_allow_them() {
     let lines = |of: usize, text: &str| findings(&list[of], &words(text));
     assert_eq!(lines(0, "always\nown_way\nThe same way\na Way"), [2, 4]);
     assert_eq!(lines(1, "withdrawn\n\"withdrawn\""), [1]);
+}
+
+/// Most characters of a line of prose.
+const MAX_LINE: usize = 120;
+/// Most lines of a document, by the start of its path; the first row that fits decides.
+const MAX_LINES: [(&str, usize); 6] = [
+    ("README.md", 90),
+    ("DESIGN.md", 110),
+    ("CONTRIBUTING.md", 110),
+    ("docs/guide/", 120),
+    ("docs/theory/", 120),
+    ("docs/decisions/0", 40),
+];
+
+#[test]
+fn documents_keep_their_limits() {
+    let mut found = Vec::new();
+    for path in looked_at() {
+        let name = path.to_string_lossy().into_owned();
+        if !name.ends_with(".md") || name.starts_with("docs/reference") {
+            continue;
+        }
+        let page = text(&path);
+        let most = MAX_LINES.iter().find(|(start, _)| name.starts_with(start));
+        let count = page.lines().count();
+        if let Some((_, most)) = most.filter(|(_, most)| count > *most) {
+            found.push(format!("{name}: {count} lines; at most {most}"));
+        }
+        let mut is_code = false;
+        for (number, line) in (1..).zip(page.lines()) {
+            is_code ^= line.starts_with("```");
+            // A row of a table and a picture cannot be broken.
+            let is_prose = !is_code && !line.starts_with(['|', '!']);
+            if is_prose && line.chars().count() > MAX_LINE {
+                found.push(format!("{name}:{number}: more than {MAX_LINE} characters"));
+            }
+        }
+    }
+    assert!(found.is_empty(), "{} findings\n{}", found.len(), found.join("\n"));
 }
