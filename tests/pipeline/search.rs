@@ -5,7 +5,7 @@ use billow_study::job::JobId;
 use billow_study::platform::files::Disk;
 use billow_study::store::results::Results;
 use billow_study::store::stored::Stored;
-use billow_study::study::{Border, MAX_POINTS, Outcome, Study};
+use billow_study::study::{Border, MAX_POINTS, SearchResult, Study};
 use serde_json::{Value as Json, json};
 
 use crate::support::{TestFolder, grid, stderr};
@@ -52,7 +52,9 @@ fn a_search_finds_the_border_of_a_limit_and_resumes() {
     assert_eq!(found.len(), 2, "one search for each N");
     let rows = rows(&folder);
     for border in &found {
-        let Outcome::Border { low, high, met_below } = border.outcome else { panic!("{border:?}") };
+        let SearchResult::Border { low, high, met_below } = border.outcome else {
+            panic!("{border:?}")
+        };
         assert!(met_below && low < high && high <= 1.02 * low, "{low} to {high}");
         let number = |row: &Json, name: &str| row[name].as_f64().unwrap();
         let same =
@@ -101,7 +103,7 @@ fn an_interrupted_search_plans_the_same_jobs() {
 fn replicates_repeat_every_point_and_decide_together() {
     let folder = TestFolder::finished(&replicated());
     for border in borders(&folder) {
-        let Outcome::Border { low, high, met_below: true } = border.outcome else {
+        let SearchResult::Border { low, high, met_below: true } = border.outcome else {
             panic!("{border:?}")
         };
         for level in &border.levels {
@@ -178,7 +180,7 @@ fn a_search_runs_along_single_points_that_do_not_give_its_key() {
     let values: Vec<&Value> = found.iter().map(|border| &border.parameters[0].1).collect();
     assert_eq!(values, [5, 6, 7].map(Value::Integer).iter().collect::<Vec<_>>());
     for border in &found {
-        let Outcome::Border { low, high, .. } = border.outcome else { panic!("{border:?}") };
+        let SearchResult::Border { low, high, .. } = border.outcome else { panic!("{border:?}") };
         assert!(high <= 1.02 * low, "the filter does not end a search of a single point");
     }
     assert!(
@@ -192,7 +194,7 @@ fn a_job_that_two_points_share_counts_once() {
     let plain = TestFolder::finished(&searching());
     let expected = borders(&plain);
     // A value that the bisection meets, and a single point that is one of the product.
-    let Outcome::Border { low, .. } = expected[0].outcome else { panic!("{expected:?}") };
+    let SearchResult::Border { low, .. } = expected[0].outcome else { panic!("{expected:?}") };
     let mut study = searching();
     study["grid"]["points"] = json!([{"N": 5, "mass_flow_rate": low}, {"N": 5}]);
     let folder = TestFolder::finished(&study);
@@ -215,7 +217,7 @@ fn a_filter_that_ends_a_search_is_reported() {
     let folder = TestFolder::new(&study);
     let printed = folder.stdout(&["run", "grid.json", "-q"]);
     for border in borders(&folder) {
-        let Outcome::Border { low, high, .. } = border.outcome else { panic!("{border:?}") };
+        let SearchResult::Border { low, high, .. } = border.outcome else { panic!("{border:?}") };
         assert_eq!(border.filtered, high > 1.02 * low, "{low} to {high}");
     }
     assert_eq!(

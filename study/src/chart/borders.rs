@@ -22,7 +22,7 @@ use crate::render::figure::style::Fill;
 use crate::render::figure::unit::Unit;
 use crate::render::figure::{Sheet, columns};
 use crate::store::table::Column;
-use crate::study::{Border, Level, Outcome};
+use crate::study::{Border, Level, SearchResult};
 
 /// Distance of lines with equal x, mm.
 const SHIFT: f64 = 3.0;
@@ -217,7 +217,7 @@ impl<'d> Drawing<'d> {
         let logarithmic = is_logarithmic(of_first) && ends[0] > 0.0;
         let spread = if logarithmic { Spread::Logarithmic } else { Spread::Linear };
         let mut sides = found.iter().flatten().filter_map(|border| match border.outcome {
-            Outcome::Border { met_below, .. } => Some(met_below),
+            SearchResult::Border { met_below, .. } => Some(met_below),
             _ => None,
         });
         let side = sides.next().filter(|first| sides.all(|side| side == *first));
@@ -289,7 +289,9 @@ impl<'d> Drawing<'d> {
                     panel.lane.push(Mark { x: positions.of(row), series, letter });
                 }
                 match &border.outcome {
-                    Outcome::Border { .. } => piece.extend(line.marks.last().map(|mark| mark.0)),
+                    SearchResult::Border { .. } => {
+                        piece.extend(line.marks.last().map(|mark| mark.0))
+                    }
                     _ => line.pieces.push(std::mem::take(&mut piece)),
                 }
             }
@@ -324,7 +326,7 @@ impl<'d> Drawing<'d> {
         let decided = self.decided(border);
         let letter = |letter: &str| Sample::Letter(letter.to_owned());
         let (order, sample, text) = match &border.outcome {
-            Outcome::Border { low, high, met_below } => {
+            SearchResult::Border { low, high, met_below } => {
                 let [low, high] = [*low, *high].map(|value| self.unit.shown(value));
                 line.bars.push([x, low, high]);
                 let middle = match self.spread {
@@ -337,7 +339,7 @@ impl<'d> Drawing<'d> {
                 self.column(line, if *met_below { [x, first, low] } else { [x, high, last] });
                 (0, Sample::Bar, "interval of the border".to_owned())
             }
-            Outcome::NoChange { met } => {
+            SearchResult::NoChange { met } => {
                 if let Some([first, last]) = decided.filter(|_| *met) {
                     self.column(line, [x, first, last]);
                 }
@@ -352,13 +354,15 @@ impl<'d> Drawing<'d> {
                     None => (order, letter(sign), text),
                 }
             }
-            Outcome::NotMonotone(intervals) => {
+            SearchResult::NotMonotone(intervals) => {
                 let bars = intervals.iter().map(|ends| ends.map(|value| self.unit.shown(value)));
                 line.bars.extend(bars.map(|[low, high]| [x, low, high]));
                 (3, letter("M"), "not monotone: changes more than once".to_owned())
             }
-            Outcome::Undecided => (4, letter("U"), "undecided at every value searched".to_owned()),
-            Outcome::Open => (5, letter("P"), "pending: runs have not ended".to_owned()),
+            SearchResult::Undecided => {
+                (4, letter("U"), "undecided at every value searched".to_owned())
+            }
+            SearchResult::Open => (5, letter("P"), "pending: runs have not ended".to_owned()),
         };
         let sign = match &sample {
             Sample::Letter(letter) => Some(letter.clone()),

@@ -14,7 +14,7 @@ use crate::job::row::{CellType, ColumnId};
 use crate::platform::error::{Error, Result};
 use crate::store::table::select::filtered;
 use crate::store::table::{Column, Table};
-use crate::study::Outcome;
+use crate::study::SearchResult;
 
 /// Arguments of `billow borders`.
 #[derive(Debug, clap::Args)]
@@ -123,14 +123,14 @@ fn borders(searches: &Searches, table: &Table) -> Table {
         ..column(name, CellType::Number, &|found| of(found).map_or(Value::Null, Value::Number))
     };
     let border = |found: &Found| match found.border.outcome {
-        Outcome::Border { low, high, .. } => Some([low, high]),
+        SearchResult::Border { low, high, .. } => Some([low, high]),
         _ => None,
     };
     let mut columns = vec![column("search", CellType::Text, &|_| Value::Null)];
     columns.extend(parameters(searches, table));
     // A column with this name ends the parameters of a table.
     columns.push(column(ColumnId::Status.name(), CellType::Text, &|found| {
-        let open = found.border.outcome == Outcome::Open;
+        let open = found.border.outcome == SearchResult::Open;
         text(if open { Status::Pending.name() } else { Status::Done.name() })
     }));
     columns.extend([
@@ -174,7 +174,7 @@ fn parameters(searches: &Searches, table: &Table) -> Vec<Column> {
 
 /// The intervals in which the outcome changes, where there are several.
 fn changes_text(searches: &Searches, found: &Found) -> Value {
-    let Outcome::NotMonotone(changes) = &found.border.outcome else { return Value::Null };
+    let SearchResult::NotMonotone(changes) = &found.border.outcome else { return Value::Null };
     let text = |[low, high]: &[f64; 2]| {
         let high = searches.shown.quantity(&Value::Number(*high));
         format!("{} to {high}", searches.shown.text(&Value::Number(*low)))

@@ -10,7 +10,7 @@ use super::options::OutputOptions;
 use super::print::print_rows;
 use super::{Format, output_error};
 use crate::accuracy::PROMISED;
-use crate::input::keys::listing::{Entry, FileKind, REQUIRED, entries};
+use crate::input::keys::listing::{FileKind, KeyDescription, REQUIRED, entries};
 use crate::input::schema;
 use crate::input::value::Value;
 use crate::job::row::COLUMNS;
@@ -77,7 +77,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         let text: String = found.iter().map(|(kind, entry)| described(kind, entry)).collect();
         return write!(out, "{text}").map_err(output_error);
     }
-    let row = |(kind, entry): &(&str, Entry)| {
+    let row = |(kind, entry): &(&str, KeyDescription)| {
         [kind, &*entry.path, entry.unit, &entry.default, &entry.allowed, &entry.meaning]
             .map(|text| Value::Text(text.to_owned()))
             .to_vec()
@@ -99,7 +99,7 @@ fn print_schema(of: SchemaOf, out: &mut dyn Write) -> Result<()> {
 }
 
 /// A key on a few lines: path, then unit, default and range, then meaning.
-fn described(kind: &str, entry: &Entry) -> String {
+fn described(kind: &str, entry: &KeyDescription) -> String {
     let mut lines = vec![match kind {
         COLUMN => format!("{} ({kind})", entry.path),
         _ => entry.path.clone(),
@@ -126,16 +126,16 @@ fn described(kind: &str, entry: &Entry) -> String {
 }
 
 /// Whether an entry is found.
-type Test<'a> = &'a dyn Fn(&Entry) -> bool;
+type Test<'a> = &'a dyn Fn(&KeyDescription) -> bool;
 
 /// The keys with this name, else those with the word in their name, else the columns of the table with it in theirs,
 /// else the keys with it in their meaning.
-fn search(file: FileKind, word: &str) -> Result<Vec<(&'static str, Entry)>> {
+fn search(file: FileKind, word: &str) -> Result<Vec<(&'static str, KeyDescription)>> {
     let lower = word.trim().to_lowercase();
     let (keys, columns) = (entries(file), columns());
     let is_long = lower.chars().count() >= MIN_PART;
     // Another case of one letter is another key: N panels, n subdivisions.
-    let tests: [(&'static str, &[Entry], Test<'_>); 6] = [
+    let tests: [(&'static str, &[KeyDescription], Test<'_>); 6] = [
         (file.name(), &keys, &|entry| entry.path == word || leaf(&entry.path) == word),
         (file.name(), &keys, &|entry| leaf(&entry.path).to_lowercase() == lower),
         (file.name(), &keys, &|entry| has_word(&entry.path, &lower)),
@@ -168,8 +168,8 @@ fn has_word(text: &str, lower: &str) -> bool {
 }
 
 /// The columns of the table, also those of mesh errors.
-fn columns() -> Vec<Entry> {
-    let entry = |path: &str, unit, meaning| Entry {
+fn columns() -> Vec<KeyDescription> {
+    let entry = |path: &str, unit, meaning| KeyDescription {
         path: path.to_owned(),
         unit,
         default: String::new(),
@@ -185,7 +185,12 @@ fn columns() -> Vec<Entry> {
 }
 
 /// The error of a word that no key and no column has, with the nearest names of both.
-fn not_found(file: FileKind, word: &str, keys: &[Entry], columns: &[Entry]) -> InputError {
+fn not_found(
+    file: FileKind,
+    word: &str,
+    keys: &[KeyDescription],
+    columns: &[KeyDescription],
+) -> InputError {
     let mut names: Vec<&str> = keys.iter().chain(columns).map(|entry| leaf(&entry.path)).collect();
     let mut near: Vec<&str> = Vec::new();
     while near.len() < MAX_NEAREST
@@ -200,7 +205,8 @@ fn not_found(file: FileKind, word: &str, keys: &[Entry], columns: &[Entry]) -> I
         FileKind::Scene => (FileKind::Study, format!("billow keys {shown}")),
     };
     let lower = word.to_lowercase();
-    let has = |entry: &Entry| has_word(&entry.path, &lower) || has_word(&entry.meaning, &lower);
+    let has =
+        |entry: &KeyDescription| has_word(&entry.path, &lower) || has_word(&entry.meaning, &lower);
     let hint = if !near.is_empty() {
         format!("nearest: {}", near.join(", "))
     } else if entries(other).iter().any(has) {

@@ -298,10 +298,10 @@ fn quantity_forms(quantity: Quantity) -> Json {
     let number = json!({"type": "number", min: quantity.min, "maximum": quantity.max});
     let text = json!({"$ref": format!("#/$defs/{}", definition(quantity.dimension))});
     let words: Vec<&str> = quantity.words.iter().map(|(word, _)| *word).collect();
-    match words.is_empty() {
-        true => json!({"oneOf": [number, text]}),
-        false => json!({"oneOf": [number, text, {"enum": words}]}),
+    if words.is_empty() {
+        return json!({"oneOf": [number, text]});
     }
+    json!({"oneOf": [number, text, {"enum": words}]})
 }
 
 /// Name of the definition of a dimension's texts.

@@ -45,7 +45,7 @@ pub(crate) use accuracy::features;
 use accuracy::{ACCURACY, Accuracy};
 use grid::{Context, Grid};
 pub use parameters::{StudyKey, Zipped};
-pub use search::{Border, Criterion, Level, Outcome};
+pub use search::{Border, Criterion, Level, SearchResult};
 
 /// Number of points of a grid, before its filter, at most (chosen: a quarter of a million are planned in
 /// seconds and fit in memory).

@@ -84,7 +84,7 @@ fn seeds(count: i64, path: &str, json: &Json, context: Context<'_>) -> Result<Js
     let fits = usize::try_from(count).is_ok_and(|count| (1..=max_points).contains(&count));
     if !fits {
         let problem = "is not a number of seeds";
-        let allowed = format!("1 to {}, or {ALLOWED}", max_points);
+        let allowed = format!("1 to {max_points}, or {ALLOWED}");
         return Err(source.error(path, &json.brief(), problem, allowed));
     }
     Ok(Json::List((1..=count).map(Json::Integer).collect()))

@@ -7,7 +7,7 @@ use crate::input::value::Value;
 use crate::job::row::{CellType, DerivedColumn};
 use crate::store::stored::Stored;
 use crate::store::table::Table;
-use crate::study::{Border, Criterion, Level, Outcome};
+use crate::study::{Border, Criterion, Level, SearchResult};
 
 /// The searches of a study.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,11 +74,11 @@ impl Found {
     /// Name of the outcome.
     pub fn outcome(&self) -> &'static str {
         match self.border.outcome {
-            Outcome::Open => "open",
-            Outcome::Border { .. } => "border",
-            Outcome::NotMonotone(_) => "not_monotone",
-            Outcome::NoChange { .. } => "no_change",
-            Outcome::Undecided => "undecided",
+            SearchResult::Open => "open",
+            SearchResult::Border { .. } => "border",
+            SearchResult::NotMonotone(_) => "not_monotone",
+            SearchResult::NoChange { .. } => "no_change",
+            SearchResult::Undecided => "undecided",
         }
     }
 
@@ -99,7 +99,7 @@ impl Found {
 
     /// Number of values inside the border at which the runs disagree.
     pub fn undecided_inside(&self, replicates: usize) -> usize {
-        let Outcome::Border { low, high, .. } = self.border.outcome else { return 0 };
+        let SearchResult::Border { low, high, .. } = self.border.outcome else { return 0 };
         self.undecided(replicates).iter().filter(|value| low < **value && **value < high).count()
     }
 
@@ -117,7 +117,9 @@ impl Found {
     /// Whether the criterion is met below the border, or at every value.
     pub fn met_below(&self) -> Option<bool> {
         match self.border.outcome {
-            Outcome::Border { met_below: met, .. } | Outcome::NoChange { met } => Some(met),
+            SearchResult::Border { met_below: met, .. } | SearchResult::NoChange { met } => {
+                Some(met)
+            }
             _ => None,
         }
     }
@@ -128,8 +130,8 @@ impl Found {
 fn deciding(table: &Table, parameter: &str, border: &Border) -> Option<String> {
     // Without a border every value that is not safe says what decides.
     let side = match border.outcome {
-        Outcome::Border { low, high, met_below } => Some(if met_below { high } else { low }),
-        Outcome::NoChange { met: false } => None,
+        SearchResult::Border { low, high, met_below } => Some(if met_below { high } else { low }),
+        SearchResult::NoChange { met: false } => None,
         _ => return None,
     };
     let names = table.column(DerivedColumn::SmallestMarginOf.name())?;

@@ -5,14 +5,14 @@ use crate::chart::borders::Searched;
 use crate::chart::kinds::ChartKind;
 use crate::chart::map::Judged;
 use crate::job::proportion::Proportion;
-use crate::study::{Border, Level, Outcome};
+use crate::study::{Border, Level, SearchResult};
 
 const REPLICATES: usize = 4;
 /// The values of a search, kg/s.
 const SCAN: [f64; 5] = [0.001, 0.002, 0.004, 0.008, 0.016];
-const FOUND: Outcome = Outcome::Border { low: 0.002, high: 0.008, met_below: true };
+const FOUND: SearchResult = SearchResult::Border { low: 0.002, high: 0.008, met_below: true };
 
-fn border(strategy: &str, mass: f64, met: [usize; 5], outcome: Outcome) -> Border {
+fn border(strategy: &str, mass: f64, met: [usize; 5], outcome: SearchResult) -> Border {
     let level = |(value, met)| Level {
         value,
         met: Proportion { met, of: REPLICATES },
@@ -32,12 +32,12 @@ fn border(strategy: &str, mass: f64, met: [usize; 5], outcome: Outcome) -> Borde
 
 /// The searches of both strategies at two residual masses; one is not monotone.
 fn borders() -> Vec<Border> {
-    let twice = Outcome::NotMonotone(vec![[0.001, 0.002], [0.004, 0.008]]);
+    let twice = SearchResult::NotMonotone(vec![[0.001, 0.002], [0.004, 0.008]]);
     vec![
         border("direct", 0.0, [4, 4, 3, 0, 0], FOUND),
-        border("direct", 1e-4, [4; 5], Outcome::NoChange { met: true }),
+        border("direct", 1e-4, [4; 5], SearchResult::NoChange { met: true }),
         border("rapid", 0.0, [4, 0, 0, 4, 4], twice),
-        border("rapid", 1e-4, [0; 5], Outcome::NoChange { met: false }),
+        border("rapid", 1e-4, [0; 5], SearchResult::NoChange { met: false }),
     ]
 }
 
@@ -146,9 +146,9 @@ fn searches_that_change_one_factor_at_a_time_stand_under_their_names() {
 
 #[test]
 fn a_search_without_a_change_has_an_arrow_only_where_the_border_is_known_to_lie() {
-    let met = Outcome::NoChange { met: true };
+    let met = SearchResult::NoChange { met: true };
     // No search says on which side the criterion is met.
-    let none = Outcome::NoChange { met: false };
+    let none = SearchResult::NoChange { met: false };
     let all = [border("direct", 0.0, [4; 5], met.clone()), border("rapid", 0.0, [0; 5], none)];
     let (_, texts) = drawn(&all, "safe");
     shows(

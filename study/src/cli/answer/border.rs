@@ -3,7 +3,7 @@
 use crate::analysis::answer::{Found, Searches};
 use crate::cli::print::count;
 use crate::input::value::Value;
-use crate::study::Outcome;
+use crate::study::SearchResult;
 
 /// Most searches that the answer names.
 const MAX_SEARCHES: usize = 12;
@@ -14,7 +14,7 @@ pub(super) fn lines(searches: &Searches) -> Vec<String> {
         searches.found.iter().take(MAX_SEARCHES).map(|found| line(searches, found)).collect();
     let more = searches.found.len() - lines.len();
     if more > 0 {
-        let open = searches.found.iter().filter(|found| found.border.outcome == Outcome::Open);
+        let open = searches.found.iter().filter(|found| found.border.outcome == SearchResult::Open);
         let open = match open.count() {
             0 => String::new(),
             open => format!(" ({open} of all are open)"),
@@ -31,11 +31,11 @@ fn line(searches: &Searches, found: &Found) -> String {
         format!("{} to {}", unit.text(&Value::Number(low)), unit.quantity(&high))
     };
     let text = match &found.border.outcome {
-        Outcome::Open => {
+        SearchResult::Open => {
             let open = found.sum(|level| level.open);
             format!("{name}: open: {} not run", count(open, "job"))
         }
-        Outcome::Border { low, high, met_below } => {
+        SearchResult::Border { low, high, met_below } => {
             let sides = if *met_below { ("below", "above") } else { ("above", "below") };
             let open = match found.undecided_inside(searches.replicates) {
                 0 => String::new(),
@@ -43,11 +43,11 @@ fn line(searches: &Searches, found: &Found) -> String {
             };
             format!("{name} {}: {what} {}, not {}{open}", interval([*low, *high]), sides.0, sides.1)
         }
-        Outcome::NotMonotone(changes) => {
+        SearchResult::NotMonotone(changes) => {
             let changes: Vec<String> = changes.iter().map(|change| interval(*change)).collect();
             format!("{name}: {what}: not monotone: changes in {}", changes.join(" and in "))
         }
-        Outcome::NoChange { met } => {
+        SearchResult::NoChange { met } => {
             let range = found.decided(searches.replicates).map(interval).unwrap_or_default();
             let value = if *met { "every decided" } else { "no decided" };
             let open = found.undecided(searches.replicates);
@@ -62,7 +62,7 @@ fn line(searches: &Searches, found: &Found) -> String {
             };
             format!("{name}: {what} at {value} value from {range}{open}")
         }
-        Outcome::Undecided => format!("{name}: {what}: not decided at any value"),
+        SearchResult::Undecided => format!("{name}: {what}: not decided at any value"),
     };
     let varies = |index: &usize| {
         let mut values = searches.found.iter().map(|other| &other.parameters[*index].1);

@@ -1,7 +1,7 @@
 //! Tokens of an expression.
 
-use super::ExpressionError;
 use super::node::Operator;
+use super::{ExpressionError, Span};
 use crate::input::units::{is_unit, number_length};
 
 #[derive(Debug, Clone, PartialEq)]
@@ -16,112 +16,92 @@ pub(super) enum Token {
     End,
 }
 
-/// Splits an expression into tokens; the last is [`Token::End`].
-pub(super) fn tokens(text: &str) -> Result<Vec<(Token, (usize, usize))>, ExpressionError> {
+/// Operators and brackets; of two that begin alike the longer one is first.
+const SIGNS: [(&str, Token); 13] = [
+    ("==", Token::Operator(Operator::Equal)),
+    ("=", Token::Operator(Operator::Equal)),
+    ("!=", Token::Operator(Operator::Unequal)),
+    ("<=", Token::Operator(Operator::LessEqual)),
+    ("<", Token::Operator(Operator::Less)),
+    (">=", Token::Operator(Operator::GreaterEqual)),
+    (">", Token::Operator(Operator::Greater)),
+    ("+", Token::Operator(Operator::Add)),
+    ("-", Token::Operator(Operator::Subtract)),
+    ("*", Token::Operator(Operator::Multiply)),
+    ("/", Token::Operator(Operator::Divide)),
+    ("(", Token::Open),
+    (")", Token::Close),
+];
+
+/// Splits an expression into tokens with their places; the last is [`Token::End`].
+pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Span)>, ExpressionError> {
     let mut tokens = Vec::new();
-    let mut position = 0;
-    while let Some(first) = text[position..].chars().next() {
-        let start = position;
-        position += first.len_utf8();
-        let token = match first {
-            _ if first.is_whitespace() => continue,
-            '(' => Token::Open,
-            ')' => Token::Close,
-            '+' => Token::Operator(Operator::Add),
-            '-' => Token::Operator(Operator::Subtract),
-            '*' => Token::Operator(Operator::Multiply),
-            '/' => Token::Operator(Operator::Divide),
-            '=' | '!' | '<' | '>' => {
-                let equal = text[position..].starts_with('=');
-                let length = 1 + usize::from(equal);
-                position = start + length;
-                let operator = match (first, equal) {
-                    ('=', _) => Operator::Equal,
-                    ('!', true) => Operator::Unequal,
-                    ('<', true) => Operator::LessEqual,
-                    ('<', false) => Operator::Less,
-                    ('>', true) => Operator::GreaterEqual,
-                    ('>', false) => Operator::Greater,
-                    _ => {
-                        return Err(ExpressionError::new(
-                            text,
-                            (start, position),
-                            "`!` alone",
-                            "`not`, or `!=`",
-                        ));
-                    }
-                };
-                Token::Operator(operator)
-            }
-            '\'' | '"' => {
-                let Some(length) = text[position..].find(first) else {
-                    return Err(ExpressionError::new(
-                        text,
-                        (start, text.len()),
-                        "a text without its closing quote",
-                        "text in single or double quotes",
-                    ));
-                };
-                let quoted = text[position..position + length].to_owned();
-                position += length + 1;
-                Token::Text(quoted)
-            }
-            '0'..='9' | '.' => {
-                position = start + number_length(&text[start..]).unwrap_or(1);
-                let number = text[start..position].parse::<f64>();
-                match (number, after_number(&text[position..])) {
-                    (Ok(number), "") if number.is_finite() => Token::Number(number),
-                    // A percentage is a pure number: it must not be compared with a length.
-                    (Ok(_), unit @ "%") => {
-                        let number = &text[start..position];
-                        position += text[position..].find(unit).unwrap_or(0) + unit.len();
-                        Token::Text(format!("{number} {unit}"))
-                    }
-                    (Ok(_), unit) if !unit.is_empty() => {
-                        let end = position + text[position..].find(unit).unwrap_or(0) + unit.len();
-                        return Err(ExpressionError::new(
-                            text,
-                            (start, end),
-                            "a number with a unit is written in quotes",
-                            format!("'{} {unit}', or a number in SI", &text[start..position]),
-                        ));
-                    }
-                    _ => {
-                        return Err(ExpressionError::new(
-                            text,
-                            (start, position),
-                            "not a number",
-                            "a number in SI, or a quantity in quotes ('5 g/s')",
-                        ));
-                    }
-                }
-            }
-            _ if first.is_alphabetic() || first == '_' => {
-                let rest = text[start..]
-                    .find(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.' | '[' | ']')));
-                position = rest.map_or(text.len(), |length| start + length);
-                match &text[start..position] {
-                    "and" => Token::Operator(Operator::And),
-                    "or" => Token::Operator(Operator::Or),
-                    "not" => Token::Not,
-                    name => Token::Name(name.to_owned()),
-                }
-            }
-            _ => {
-                let allowed = "and, or, not, == != < <= > >=, + - * /, ( ), numbers, quoted text, \
-                               names";
-                let problem = match first {
-                    '&' => "`&` is written `and`".to_owned(),
-                    '|' => "`|` is written `or`".to_owned(),
-                    other => format!("`{}` does not belong in an expression", other.escape_debug()),
-                };
-                return Err(ExpressionError::new(text, (start, position), problem, allowed));
-            }
+    let mut start = 0;
+    while let Some(first) = text[start..].chars().next() {
+        let rest = &text[start..];
+        let (token, end) = if first.is_whitespace() {
+            start += first.len_utf8();
+            continue;
+        } else if let Some((sign, token)) = SIGNS.iter().find(|(sign, _)| rest.starts_with(sign)) {
+            (token.clone(), start + sign.len())
+        } else if matches!(first, '0'..='9' | '.') {
+            number(text, start)?
+        } else if matches!(first, '\'' | '"') {
+            let Some(length) = rest[1..].find(first) else {
+                let problem = "a text without its closing quote";
+                let allowed = "text in single or double quotes";
+                return Err(ExpressionError::new(text, (start, text.len()), problem, allowed));
+            };
+            (Token::Text(rest[1..=length].to_owned()), start + length + 2)
+        } else if first.is_alphabetic() || first == '_' {
+            let in_name = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '[' | ']');
+            let name = &rest[..rest.find(|c| !in_name(c)).unwrap_or(rest.len())];
+            let token = match name {
+                "and" => Token::Operator(Operator::And),
+                "or" => Token::Operator(Operator::Or),
+                "not" => Token::Not,
+                name => Token::Name(name.to_owned()),
+            };
+            (token, start + name.len())
+        } else {
+            let allowed =
+                "and, or, not, == != < <= > >=, + - * /, ( ), numbers, quoted text, names";
+            let problem = match first {
+                '&' => "`&` is written `and`".to_owned(),
+                '|' => "`|` is written `or`".to_owned(),
+                '!' => "`!` alone is written `not`".to_owned(),
+                other => format!("`{}` does not belong in an expression", other.escape_debug()),
+            };
+            let span = (start, start + first.len_utf8());
+            return Err(ExpressionError::new(text, span, problem, allowed));
         };
-        tokens.push((token, (start, position)));
+        tokens.push((token, (start, end)));
+        start = end;
     }
     tokens.push((Token::End, (text.len(), text.len())));
     Ok(tokens)
+}
+
+/// The number at a place, and its end. A percentage is a pure number: it must not be compared with a length.
+fn number(text: &str, start: usize) -> Result<(Token, usize), ExpressionError> {
+    let end = start + number_length(&text[start..]).unwrap_or(1);
+    let (digits, unit) = (&text[start..end], after_number(&text[end..]));
+    let end_of_unit = text[end..].find(unit).map_or(end, |space| end + space + unit.len());
+    let refuse = |end: usize, problem: &str, allowed: String| {
+        Err(ExpressionError::new(text, (start, end), problem, allowed))
+    };
+    match digits.parse::<f64>() {
+        Ok(number) if unit.is_empty() && number.is_finite() => Ok((Token::Number(number), end)),
+        Ok(_) if unit == "%" => Ok((Token::Text(format!("{digits} %")), end_of_unit)),
+        Ok(_) if !unit.is_empty() => {
+            let allowed = format!("'{digits} {unit}', or a number in SI");
+            refuse(end_of_unit, "a number with a unit is written in quotes", allowed)
+        }
+        _ => {
+            let allowed = "a number in SI, or a quantity in quotes ('5 g/s')".to_owned();
+            refuse(end, "not a number", allowed)
+        }
+    }
 }
 
 /// What follows a number: `%`, a unit, or nothing that belongs to it.

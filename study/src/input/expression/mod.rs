@@ -23,6 +23,9 @@ use crate::input::units::Dimension;
 use crate::input::value::Value;
 use node::Known;
 
+/// A range of bytes in the text.
+type Span = (usize, usize);
+
 /// Type of a variable.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Type {
@@ -49,7 +52,7 @@ pub struct ExpressionError {
     /// The expression.
     pub text: String,
     /// The faulty part, as a range of bytes.
-    pub span: (usize, usize),
+    pub span: Span,
     /// What is wrong.
     pub problem: String,
     /// What is allowed there.
@@ -63,12 +66,7 @@ impl std::fmt::Display for ExpressionError {
 }
 
 impl ExpressionError {
-    fn new(
-        text: &str,
-        span: (usize, usize),
-        problem: impl Into<String>,
-        allowed: impl Into<String>,
-    ) -> Self {
+    fn new(text: &str, span: Span, problem: impl Into<String>, allowed: impl Into<String>) -> Self {
         Self { text: text.to_owned(), span, problem: problem.into(), allowed: allowed.into() }
     }
 

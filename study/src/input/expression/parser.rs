@@ -2,7 +2,7 @@
 
 use super::lexer::{Token, tokens};
 use super::node::{Node, Operator};
-use super::{ExpressionError, Type, Variable};
+use super::{ExpressionError, Span, Type, Variable};
 use crate::input::units::{self, Powers};
 use crate::platform::nearest::{did_you_mean, nearest};
 use crate::platform::quote;
@@ -15,9 +15,6 @@ const MAX_LENGTH: usize = 10_000;
 /// Precedence of `not`: between `and` and a comparison.
 const NOT: u8 = 3;
 const CONDITION: &str = "something true or false, as in N == 6";
-
-/// A range of bytes in the text.
-type Span = (usize, usize);
 
 /// Type of a checked expression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

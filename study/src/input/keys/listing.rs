@@ -36,7 +36,7 @@ pub const REQUIRED: &str = "required";
 
 /// One key of a file, in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Entry {
+pub struct KeyDescription {
     /// Path: `<name>` stands for any name, `[]` for the items of a list.
     pub path: String,
     /// SI unit: "1" for a pure number, empty for what is not a number.
@@ -95,11 +95,11 @@ impl FileKind {
 }
 
 /// Every key of a kind of file, in the order of the documentation.
-pub fn entries(file: FileKind) -> Vec<Entry> {
+pub fn entries(file: FileKind) -> Vec<KeyDescription> {
     let Parts { table, objects, meanings } = file.parts();
-    let mut entries: Vec<Entry> = table.keys.iter().map(|key| entry("", key)).collect();
+    let mut entries: Vec<KeyDescription> = table.keys.iter().map(|key| entry("", key)).collect();
     let structured = table.structured.iter().filter(|(path, _)| *path != "gravity");
-    entries.extend(structured.chain(meanings).map(|(path, meaning)| Entry {
+    entries.extend(structured.chain(meanings).map(|(path, meaning)| KeyDescription {
         path: (*path).to_owned(),
         unit: "",
         default: String::new(),
@@ -112,10 +112,10 @@ pub fn entries(file: FileKind) -> Vec<Entry> {
     entries
 }
 
-fn entry(parent: &str, key: &Key) -> Entry {
+fn entry(parent: &str, key: &Key) -> KeyDescription {
     let path =
         if parent.is_empty() { key.path.to_owned() } else { format!("{parent}.{}", key.path) };
-    Entry {
+    KeyDescription {
         path,
         unit: key.unit(),
         default: default_text(key),

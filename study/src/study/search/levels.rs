@@ -30,7 +30,7 @@ impl Level {
 
 /// What a search found.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Outcome {
+pub enum SearchResult {
     /// Some of its runs have not ended.
     Open,
     /// The outcome changes once, in this interval.
@@ -61,15 +61,15 @@ pub struct Border {
     /// Its values, from the smallest to the largest.
     pub levels: Vec<Level>,
     /// What it found.
-    pub outcome: Outcome,
+    pub outcome: SearchResult,
     /// Whether the filter of the study removed a value that the search needed: it ended there.
     pub filtered: bool,
 }
 
 /// The outcome of these levels, in order of their values.
-pub(super) fn outcome(levels: &[Level], replicates: usize) -> Outcome {
+pub(super) fn outcome(levels: &[Level], replicates: usize) -> SearchResult {
     if levels.iter().any(|level| level.open > 0) {
-        return Outcome::Open;
+        return SearchResult::Open;
     }
     let decided: Vec<(f64, bool)> =
         levels.iter().filter_map(|level| Some((level.value, level.outcome(replicates)?))).collect();
@@ -79,18 +79,20 @@ pub(super) fn outcome(levels: &[Level], replicates: usize) -> Outcome {
         .map(|pair| [pair[0].0, pair[1].0])
         .collect();
     match (changes.as_slice(), decided.first()) {
-        (_, None) => Outcome::Undecided,
-        ([], Some((_, met))) => Outcome::NoChange { met: *met },
+        (_, None) => SearchResult::Undecided,
+        ([], Some((_, met))) => SearchResult::NoChange { met: *met },
         ([[low, high]], Some((_, met))) => {
-            Outcome::Border { low: *low, high: *high, met_below: *met }
+            SearchResult::Border { low: *low, high: *high, met_below: *met }
         }
-        _ => Outcome::NotMonotone(changes),
+        _ => SearchResult::NotMonotone(changes),
     }
 }
 
 /// The values to run next, in increasing order; none where the search has ended.
 pub(super) fn next(search: &Search, levels: &[Level], replicates: usize) -> Vec<f64> {
-    let Outcome::Border { low, high, .. } = outcome(levels, replicates) else { return Vec::new() };
+    let SearchResult::Border { low, high, .. } = outcome(levels, replicates) else {
+        return Vec::new();
+    };
     let inside =
         levels.iter().map(|level| level.value).filter(|value| low < *value && *value < high);
     let inside: Vec<f64> = inside.collect();
@@ -145,7 +147,7 @@ mod tests {
             for border in [1.001, 2.7, 5.0, 8.99] {
                 let search = search(tolerance, spacing);
                 let levels = run(&search, 1, &|value| usize::from(value > border));
-                let Outcome::Border { low, high, met_below } = outcome(&levels, 1) else {
+                let SearchResult::Border { low, high, met_below } = outcome(&levels, 1) else {
                     panic!("no border at {border}")
                 };
                 assert!(low <= border && border < high && !met_below, "{border}: {low} to {high}");
@@ -174,7 +176,7 @@ mod tests {
         };
         let search = search(Tolerance::Absolute(0.1), Spacing::Linear);
         let levels = run(&search, 5, &rule);
-        let Outcome::Border { low, high, met_below } = outcome(&levels, 5) else { panic!() };
+        let SearchResult::Border { low, high, met_below } = outcome(&levels, 5) else { panic!() };
         assert!(met_below && low < 4.0 && high > 6.0);
         assert!(4.0 - low <= 0.1 && high - 6.0 <= 0.1, "{low} to {high}");
     }
@@ -183,12 +185,12 @@ mod tests {
     fn what_changes_twice_is_not_monotone_and_what_never_changes_has_no_border() {
         let search = search(Tolerance::Absolute(0.1), Spacing::Linear);
         let twice = run(&search, 1, &|value| usize::from((3.0..6.0).contains(&value)));
-        assert_eq!(outcome(&twice, 1), Outcome::NotMonotone(vec![[1.0, 3.0], [5.0, 7.0]]));
+        assert_eq!(outcome(&twice, 1), SearchResult::NotMonotone(vec![[1.0, 3.0], [5.0, 7.0]]));
         assert_eq!(twice.len(), 5, "no more jobs");
         let never = run(&search, 1, &|_| 1);
-        assert_eq!((outcome(&never, 1), never.len()), (Outcome::NoChange { met: true }, 5));
+        assert_eq!((outcome(&never, 1), never.len()), (SearchResult::NoChange { met: true }, 5));
         let mixed = run(&search, 5, &|_| 3);
-        assert_eq!((outcome(&mixed, 5), mixed.len()), (Outcome::Undecided, 5));
+        assert_eq!((outcome(&mixed, 5), mixed.len()), (SearchResult::Undecided, 5));
     }
 
     #[test]
@@ -199,9 +201,12 @@ mod tests {
         levels[1].met = Proportion::default();
         levels[1].not_judged = 1;
         let search = search(Tolerance::Absolute(0.1), Spacing::Linear);
-        assert_eq!(outcome(&levels, 1), Outcome::Border { low: 1.0, high: 5.0, met_below: false });
+        assert_eq!(
+            outcome(&levels, 1),
+            SearchResult::Border { low: 1.0, high: 5.0, met_below: false }
+        );
         assert_eq!(next(&search, &levels, 1), [2.0, 4.0]);
         levels[4].open = 1;
-        assert_eq!((outcome(&levels, 1), next(&search, &levels, 1)), (Outcome::Open, vec![]));
+        assert_eq!((outcome(&levels, 1), next(&search, &levels, 1)), (SearchResult::Open, vec![]));
     }
 }

@@ -12,7 +12,7 @@ mod levels;
 mod read;
 pub(crate) mod replay;
 
-pub use levels::{Border, Level, Outcome};
+pub use levels::{Border, Level, SearchResult};
 pub(super) use read::is_search;
 
 use crate::input::json::Json;

@@ -6,7 +6,7 @@ use crate::analysis::answer::{
     Found, Loads, MeasureVersus, PointMargin, SafeCounts, Safety, Searches, Versus,
 };
 use crate::input::value::json_value;
-use crate::study::Outcome;
+use crate::study::SearchResult;
 
 /// The safe points.
 pub fn safety(safety: &Safety) -> Value {
@@ -111,11 +111,11 @@ fn found(searches: &Searches, found: &Found) -> Value {
         "not_judged": found.sum(|level| level.not_judged),
     });
     match &found.border.outcome {
-        Outcome::Border { low, high, .. } => {
+        SearchResult::Border { low, high, .. } => {
             keys["low"] = (*low).into();
             keys["high"] = (*high).into();
         }
-        Outcome::NotMonotone(changes) => keys["changes"] = json!(changes),
+        SearchResult::NotMonotone(changes) => keys["changes"] = json!(changes),
         _ => {}
     }
     keys
