@@ -15,12 +15,12 @@ use billow_study::platform::error::{Error, Result};
 use billow_study::platform::memory;
 use billow_study::scene::file::SceneFile;
 
-use super::Row;
 use super::machine::{Watch, core_share};
+use super::{Row, cost};
 
 /// The shipped scene.
 const SCENE: &str = include_str!("../../../../scenes/capsule.json");
-/// End time of the scene: later than every timed run, so that inflow lasts through the 1.5 s case.
+/// End time of the scene: later than every timed run, so that inflow lasts through the run of 1.5 s.
 const END_TIME: &str = "solver.end_time=\"1.6 s\"";
 
 /// The capsule of one mesh.
@@ -34,12 +34,17 @@ pub(super) struct Capsule {
 }
 
 impl Capsule {
-    /// The capsule on this mesh with this instruction set.
+    /// The capsule on this mesh with these overrides of its scene.
     ///
     /// # Errors
-    /// If the scene is invalid on this mesh.
-    pub(super) fn new(subdivisions: u32, instruction_set: InstructionSet) -> Result<Self> {
-        let sets = [END_TIME.to_owned(), format!("design.subdivisions={subdivisions}")];
+    /// If the scene is invalid.
+    pub(super) fn new(
+        subdivisions: u32,
+        given: &[String],
+        instruction_set: InstructionSet,
+    ) -> Result<Self> {
+        let mut sets = vec![END_TIME.to_owned(), format!("design.subdivisions={subdivisions}")];
+        sets.extend_from_slice(given);
         let scene =
             SceneFile::from_text(SCENE, Path::new("scenes/capsule.json"), &sets, instruction_set)?;
         let timeline = Timeline::of_film(&scene.film);
@@ -47,19 +52,10 @@ impl Capsule {
     }
 
     /// The same without contact and without the tunnelling monitor: film passes through film.
-    #[must_use]
-    pub(super) fn without_contact(mut self) -> Self {
-        self.scene.film.contact = None;
-        self
-    }
-
-    /// The stowed capsule at time 0.
-    ///
-    /// # Errors
-    /// If the film is invalid.
-    fn stowed(&self) -> Result<FilmRun> {
-        let failed = |error| Error::JobsFailed(format!("n {}: {error}", self.subdivisions));
-        FilmRun::of(&self.scene.film, self.scene.rings.clone()).map_err(failed)
+    pub(super) fn without_contact(&self) -> Self {
+        let mut free = self.clone();
+        free.scene.film.contact = None;
+        free
     }
 }
 
@@ -90,8 +86,10 @@ impl<'a> Progress<'a> {
     /// # Errors
     /// If the film is invalid.
     pub(super) fn of(capsule: &'a Capsule) -> Result<Self> {
-        let (film, run) = (capsule.stowed()?, Run::default());
-        Ok(Self { capsule, film, run, wall: 0.0, on_core: Some(0.0) })
+        let failed = |error| Error::JobsFailed(format!("n {}: {error}", capsule.subdivisions));
+        let scene = &capsule.scene;
+        let film = FilmRun::of(&scene.film, scene.rings.clone()).map_err(failed)?;
+        Ok(Self { capsule, film, run: Run::default(), wall: 0.0, on_core: Some(0.0) })
     }
 
     /// Runs to a time of a sample, s.
@@ -120,11 +118,10 @@ impl<'a> Progress<'a> {
     }
 
     /// The cost from the start to this time, s. The audit is part of it: a fast run must also be a sound one.
-    pub(super) fn case(&self, time: f64) -> Row {
+    pub(super) fn row(&self, time: f64) -> Row {
         let timeline = &self.capsule.timeline;
         let audit = self.run.clone().finish(&self.film, timeline, Stop::Cancelled).audit;
         let (elements, steps) = (self.film.elements(), self.film.steps());
-        let cost = 1e9 * self.wall / (steps as f64 * elements as f64);
         vec![
             ("subdivisions", self.capsule.subdivisions.into()),
             ("end_time", time.into()),
@@ -134,7 +131,7 @@ impl<'a> Progress<'a> {
             ("core_seconds", self.on_core.into()),
             ("core_share", core_share((self.wall, self.on_core)).into()),
             ("wall_per_second", (self.wall / time).into()),
-            ("ns_per_element_step", cost.into()),
+            ("ns_per_element_step", cost(self.wall, steps, elements).into()),
             ("ledger_residual", audit.ledger_residual.into()),
             ("passages", audit.passages.into()),
             ("peak_memory", memory::peak_resident().into()),

@@ -10,8 +10,11 @@ use billow_solver::platform::simd::InstructionSet;
 use billow_study::platform::files::{Disk, Files};
 use billow_study::platform::provenance;
 
-use super::{Effort, Plan, Row};
+use super::Row;
 
+/// Repeats of a measurement, of which the fastest counts, and rounds of the arithmetic in one. Chosen: a second in all.
+const REPEATS: u32 = 10;
+const ROUNDS: u64 = 2_000_000;
 /// Bytes of a buffer larger than the private cache of a core. Chosen.
 const LARGE: usize = 64 << 20;
 /// Bytes of a buffer within that cache. Chosen.
@@ -29,19 +32,33 @@ pub(super) fn row(set: InstructionSet) -> Row {
     ]
 }
 
+<<<<<<< HEAD
 /// Speed of memory on one core.
 pub(super) fn speed(plan: &Plan<'_>) -> Row {
     let repeats = if plan.effort == Effort::Quick { 3 } else { 10 };
     vec![
         ("copy_bytes_per_second", copy(LARGE, repeats, 1).into()),
+=======
+/// Speed of arithmetic and memory on one core.
+pub(super) fn speed(set: InstructionSet) -> Row {
+    let multiply_adds = |_| {
+        let start = Instant::now();
+        let (pairs, sum) = probe::multiply_add(set, black_box(ROUNDS));
+        black_box(sum);
+        pairs as f64 / start.elapsed().as_secs_f64()
+    };
+    vec![
+        ("multiply_adds_per_second", (0..REPEATS).map(multiply_adds).fold(0.0, f64::max).into()),
+        ("copy_bytes_per_second", copy(LARGE, 1).into()),
+>>>>>>> 5b4f45d (Measure only what is read, and give each reference case one function)
         ("copy_bytes", LARGE.into()),
-        ("cached_copy_bytes_per_second", copy(SMALL, repeats, 200).into()),
+        ("cached_copy_bytes_per_second", copy(SMALL, 200).into()),
         ("cached_copy_bytes", SMALL.into()),
     ]
 }
 
 /// Largest number of bytes read and written per second while `bytes` are copied between two buffers.
-fn copy(bytes: usize, repeats: u32, passes: u32) -> f64 {
+fn copy(bytes: usize, passes: u32) -> f64 {
     let source = vec![1.0_f64; bytes / size_of::<f64>()];
     let mut target = vec![0.0_f64; source.len()];
     let once = |_| {
@@ -52,7 +69,7 @@ fn copy(bytes: usize, repeats: u32, passes: u32) -> f64 {
         }
         f64::from(passes) * 2.0 * bytes as f64 / start.elapsed().as_secs_f64()
     };
-    (0..repeats).map(once).fold(0.0, f64::max)
+    (0..REPEATS).map(once).fold(0.0, f64::max)
 }
 
 /// A file of the system as text.

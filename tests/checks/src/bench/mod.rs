@@ -4,11 +4,8 @@
 //! cost = wall time / (steps × elements)        ns per element and step
 //! ```
 //!
-//! The paper's capsule under 5 g/s (`capsule`) is measured in three states: stowed, rising, at the
-//! end. Parts: the machine itself (`machine`), the step without contact and a plain scalar reference (`kernels`),
-//! stages of a step (`stages`), whole runs (`runs`), quiet filling with `explicit` and `hybrid`
-//! (`quiet_filling`), static equilibria (`statics`). `targets` compares the results with the goals of the
-//! project; a missed target is not an error.
+//! The film is the paper's capsule under 5 g/s (`capsule`). Each number is the smallest of several repeats of the same
+//! work: other load on the machine only adds time.
 
 use std::io::Write;
 
@@ -16,34 +13,27 @@ use billow_solver::platform::simd::InstructionSet;
 use billow_study::cli::options::{OutputOptions, QuietOption};
 use billow_study::cli::print::print_rows;
 use billow_study::cli::{Format, instruction_set, output_error};
-use billow_study::input::value::{Value, brief_number, json_value};
+use billow_study::input::value::{Value, brief_number};
 use billow_study::platform::error::Result;
-use serde_json::json;
 
 mod capsule;
 mod kernels;
 mod machine;
-mod quiet_filling;
-mod reference_step;
-mod runs;
 mod stages;
-mod statics;
-mod targets;
+
+use capsule::{Capsule, Progress};
 
 /// A row: names and values.
 type Row = Vec<(&'static str, Value)>;
 
-/// Rows of each part, by its name.
-type Tables = Vec<(&'static str, Vec<Row>)>;
-
 /// Time of the state `rising`, s.
 const RISING: f64 = 0.03;
-/// Time to which meshes of every size are run, s, to compare their costs.
-const EARLY: f64 = 0.005;
-/// Longest wall time of a run that is repeated, s. Chosen.
+/// Times at which the cost so far is a row of `runs`, s, beside the end of a run.
+const TIMES: [f64; 4] = [0.005, 0.1, 0.3, 1.5];
+/// Number of times that a run or the steps of a state are repeated.
+const REPEATS: u32 = 3;
+/// Longest wall time of a whole run that is repeated, s. Chosen.
 const MAX_REPEATED_WALL_TIME: f64 = 0.5;
-/// Largest mesh whose kernels are timed and which runs beyond [`EARLY`], n.
-const LARGEST_RUN: u32 = 16;
 /// Least fraction of its wall time that a run has a core on an idle machine. Chosen: below it another
 /// program has used the core.
 const MIN_CORE_SHARE: f64 = 0.95;
@@ -51,29 +41,14 @@ const MIN_CORE_SHARE: f64 = 0.95;
 /// A part of the bench.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Part {
-    /// Speed of the machine.
+    /// Arithmetic and memory of the machine.
     Machine,
-    /// Steps without contact, and the scalar reference.
+    /// The step without contact and its membrane kernel, on each instruction set.
     Kernels,
     /// Stages of a step, in three states.
     Stages,
     /// Whole runs.
-    Cases,
-    /// Quiet filling, explicit against hybrid.
-    Hybrid,
-    /// Static equilibria.
-    Statics,
-}
-
-/// Extent of a bench.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Effort {
-    /// Seconds: n 5, short runs.
-    Quick,
-    /// Minutes.
-    Usual,
-    /// As usual, and the whole cases.
-    Full,
+    Runs,
 }
 
 /// Arguments of `billow-checks bench`.
@@ -82,217 +57,155 @@ pub struct Args {
     /// Measure only these parts.
     #[arg(long, value_name = "PART", value_enum, value_delimiter = ',')]
     only: Vec<Part>,
-    /// Mesh subdivisions n, comma-separated [default: 5,8,16,32; with --quick 5].
-    #[arg(long, value_name = "N", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=64))]
+    /// Mesh subdivisions n, comma-separated.
+    #[arg(long, value_name = "N", value_delimiter = ',', default_value = "5,8,16",
+        value_parser = clap::value_parser!(u32).range(1..=64))]
     subdivisions: Vec<u32>,
-    /// Take seconds instead of minutes: small meshes, short runs; most targets are not measured.
-    #[arg(long, conflicts_with = "full")]
-    quick: bool,
-    /// Also run the full-length cases: 1.5 s at n = 8, 0.3 s at n = 16, quiet filling of 12 s at n = 8.
-    #[arg(long)]
-    full: bool,
+    /// Simulated time of the runs, s [default: 0.3 up to n 8, 0.1 above].
+    #[arg(long, value_name = "SECONDS")]
+    end_time: Option<f64>,
+    /// Override a key of scenes/capsule.json, as in --set solver.integrator=hybrid; can be repeated.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
     #[command(flatten)]
     output: OutputOptions,
     #[command(flatten)]
     quiet: QuietOption,
 }
 
-/// What to measure.
-struct Plan<'a> {
-    parts: &'a [Part],
-    /// Which meshes, n; empty for the default ones.
-    subdivisions: Vec<u32>,
-    effort: Effort,
-    instruction_set: InstructionSet,
-    quiet: bool,
-}
-
-impl Plan<'_> {
+impl Args {
     fn has(&self, part: Part) -> bool {
-        self.parts.is_empty() || self.parts.contains(&part)
-    }
-
-    /// The meshes that were asked for, up to a limit; `usual` ones if none was.
-    fn meshes(&self, usual: &[u32], limit: u32) -> Vec<u32> {
-        let quick = self.effort == Effort::Quick;
-        let meshes = match self.subdivisions.as_slice() {
-            [] if quick => &usual[..1],
-            [] => usual,
-            named => named,
-        };
-        meshes.iter().copied().filter(|n| *n <= limit).collect()
-    }
-
-    /// How often something short is repeated.
-    fn repeats(&self) -> usize {
-        if self.effort == Effort::Quick { 2 } else { 3 }
+        self.only.is_empty() || self.only.contains(&part)
     }
 
     /// Says on stderr what is measured next.
     fn note(&self, next: &str) {
-        if !self.quiet {
+        if !self.quiet.quiet {
             eprintln!("billow-checks: {next}");
         }
     }
 }
 
-/// Runs `billow-checks bench`. A missed target is a result, not an error. A signal ends it without figures.
+/// Runs `billow-checks bench`. A signal ends it without figures.
 ///
 /// # Errors
 /// A run that stops before its end.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let mut subdivisions = args.subdivisions.clone();
-    subdivisions.sort_unstable();
-    subdivisions.dedup();
-    let plan = Plan {
-        parts: &args.only,
-        subdivisions,
-        effort: match (args.quick, args.full) {
-            (true, _) => Effort::Quick,
-            (_, true) => Effort::Full,
-            _ => Effort::Usual,
-        },
-        instruction_set: instruction_set::selected()?,
-        quiet: args.quiet.quiet,
-    };
-    let tables = measure(&plan)?;
-    let shares = tables.iter().flat_map(|(_, rows)| rows).flatten();
-    let shares = shares.filter(|(name, _)| *name == "core_share");
-    let least = shares.filter_map(|(_, value)| number(value)).reduce(f64::min);
-    if let Some(share) = least.filter(|share| *share < MIN_CORE_SHARE && !plan.quiet) {
-        eprintln!(
-            "billow-checks: another program used this machine: a run had a core for {:.0} % of its wall time \
-             (core_share); the times are too long",
-            100.0 * share
-        );
-    }
-    print(&plan, &tables, args.output.format(), out)
-}
-
-/// Runs every part of a plan, and compares the results with the targets.
-fn measure(plan: &Plan<'_>) -> Result<Tables> {
-    let set = plan.instruction_set;
-    let (mut kernels, mut hybrid, mut statics) = (Vec::new(), Vec::new(), Vec::new());
+    let set = instruction_set::selected()?;
     let mut machine = machine::row(set);
-    if plan.has(Part::Machine) {
-        plan.note("machine");
-        machine.extend(machine::speed(plan));
+    if args.has(Part::Machine) {
+        args.note("machine");
+        machine.extend(machine::speed(set));
     }
-    let meshes = plan.meshes(&[5, 8, 16, 32], u32::MAX);
-    if plan.has(Part::Kernels) {
-        for n in meshes.iter().copied().filter(|n| *n <= LARGEST_RUN) {
-            plan.note(&format!("kernels, n {n}"));
-            kernels.extend(kernels::measure(n, plan)?);
+    let (mut kernels, mut stages, mut runs) = (Vec::new(), Vec::new(), Vec::new());
+    for n in args.subdivisions.iter().copied() {
+        let capsule = Capsule::new(n, &args.set, set)?;
+        if args.has(Part::Kernels) {
+            args.note(&format!("kernels, n {n}"));
+            kernels.extend(kernels::measure(&capsule, set)?);
+        }
+        if args.has(Part::Stages) || args.has(Part::Runs) {
+            measure_runs(args, &capsule, &mut stages, &mut runs)?;
         }
     }
-    let (mut stages, mut cases) = (Vec::new(), Vec::new());
-    if plan.has(Part::Stages) || plan.has(Part::Cases) {
-        for n in meshes {
-            runs::measure(n, plan, &mut stages, &mut cases)?;
-        }
-    }
-    if plan.has(Part::Hybrid) {
-        for n in quiet_filling::meshes(plan) {
-            hybrid.extend(quiet_filling::measure(n, plan)?);
-        }
-    }
-    if plan.has(Part::Statics) {
-        for n in plan.meshes(&[4, 8, 16], LARGEST_RUN) {
-            plan.note(&format!("static equilibria, n {n}"));
-            statics.push(statics::measure(n, plan)?);
-        }
-    }
-    let mut tables = vec![
-        ("machine", vec![machine]),
-        ("kernels", kernels),
-        ("stages", stages),
-        ("cases", cases),
-        ("hybrid", hybrid),
-        ("statics", statics),
-    ];
-    let targets = targets::rows(&tables, set);
-    tables.push(("targets", targets));
-    Ok(tables)
-}
-
-/// The number in a cell.
-fn number(value: &Value) -> Option<f64> {
-    match value {
-        Value::Number(number) => Some(*number),
-        Value::Integer(number) => Some(*number as f64),
+    let parts =
+        [("machine", vec![machine]), ("kernels", kernels), ("stages", stages), ("runs", runs)];
+    let shares = parts.iter().flat_map(|(_, rows)| rows).flatten();
+    let shares = shares.filter_map(|(name, value)| match value {
+        Value::Number(share) if *name == "core_share" => Some(*share),
         _ => None,
+    });
+    if let Some(share) = shares.reduce(f64::min).filter(|share| *share < MIN_CORE_SHARE) {
+        args.note(&format!(
+            "another program used this machine: a run had a core for {:.0} % of its wall time (core_share); the times are \
+             too long",
+            100.0 * share
+        ));
     }
+    print(&parts, args.output.format(), out)
 }
 
-/// The value of a column of a row.
-fn cell<'a>(row: &'a Row, column: &str) -> Option<&'a Value> {
-    row.iter().find(|(name, _)| *name == column).map(|(_, value)| value)
-}
-
-/// Prints the tables: one below the other, as one CSV table of all cells, or as one JSON object.
-fn print(plan: &Plan<'_>, tables: &Tables, format: Format, out: &mut dyn Write) -> Result<()> {
-    let met = |row: &Row| cell(row, "met").cloned().unwrap_or(Value::Null);
-    let targets =
-        || tables.iter().filter(|(name, _)| *name == "targets").flat_map(|(_, rows)| rows);
-    let all_met = targets().all(|row| met(row) == Value::Bool(true));
-    let unmeasured = targets().filter(|row| met(row) == Value::Null);
-    let unmeasured: Vec<String> =
-        unmeasured.filter_map(|row| cell(row, "target")).map(ToString::to_string).collect();
-    match format {
-        Format::Table => {
-            for (name, rows) in tables.iter().filter(|(_, rows)| !rows.is_empty()) {
-                writeln!(out, "{name}").map_err(output_error)?;
-                readable(rows, out)?;
-                writeln!(out).map_err(output_error)?;
-            }
-            let missing = if unmeasured.is_empty() {
-                String::new()
-            } else {
-                format!(" (not measured: {})", unmeasured.join(", "))
-            };
-            let met = if all_met { "yes" } else { "no" };
-            writeln!(out, "targets met: {met}{missing}").map_err(output_error)
+/// Runs one mesh: its cost to each time, and the stages of a step from three states.
+fn measure_runs(
+    args: &Args,
+    capsule: &Capsule,
+    stages: &mut Vec<Row>,
+    runs: &mut Vec<Row>,
+) -> Result<()> {
+    let n = capsule.subdivisions;
+    let end = args.end_time.unwrap_or(if n <= 8 { 0.3 } else { 0.1 });
+    args.note(&format!("run, n {n}, {end} s"));
+    let mut progress = Progress::of(capsule)?;
+    let mut states = vec![("stowed", progress.film.clone())];
+    let mut times: Vec<f64> =
+        TIMES.into_iter().chain([RISING]).filter(|time| *time < end).collect();
+    times.push(end);
+    times.sort_by(f64::total_cmp);
+    for time in times {
+        progress.run_to(time)?;
+        if time.to_bits() == RISING.to_bits() {
+            states.push(("rising", progress.film.clone()));
+        } else if args.has(Part::Runs) {
+            runs.push(fastest(capsule, &progress, time)?);
         }
-        Format::Csv => {
-            let cells = tables.iter().flat_map(|(part, rows)| {
-                rows.iter().enumerate().flat_map(move |(index, row)| {
-                    row.iter().map(move |(name, value)| {
-                        vec![(*part).into(), index.into(), (*name).into(), value.clone()]
-                    })
+    }
+    states.push(("end", progress.film));
+    for (name, film) in states.iter().filter(|_| args.has(Part::Stages)) {
+        args.note(&format!("stages, n {n}, {name}"));
+        stages.push(stages::measure(capsule, name, film)?);
+    }
+    Ok(())
+}
+
+/// The cost to a time; a short run, which other processes disturb most, is repeated and the fastest kept.
+fn fastest(capsule: &Capsule, run: &Progress<'_>, time: f64) -> Result<Row> {
+    let (mut row, mut wall) = (run.row(time), run.wall);
+    for _ in (1..REPEATS).filter(|_| run.wall <= MAX_REPEATED_WALL_TIME) {
+        let mut repeat = Progress::of(capsule)?;
+        repeat.run_to(time)?;
+        if repeat.wall < wall {
+            (row, wall) = (repeat.row(time), repeat.wall);
+        }
+    }
+    Ok(row)
+}
+
+/// Prints the parts: tables one below the other with four significant digits, or every cell in one table.
+fn print(parts: &[(&'static str, Vec<Row>)], format: Format, out: &mut dyn Write) -> Result<()> {
+    if format != Format::Table {
+        let cells = parts.iter().flat_map(|(part, rows)| {
+            rows.iter().enumerate().flat_map(move |(index, row)| {
+                let cell = |(name, value): &(&'static str, Value)| (*name, value.clone());
+                row.iter().map(cell).map(move |(name, value)| {
+                    vec![(*part).into(), index.into(), name.into(), value]
                 })
-            });
-            print_rows(&["part", "row", "name", "value"], &cells.collect::<Vec<_>>(), format, out)
-        }
-        Format::Json => {
-            let row = |row: &Row| -> serde_json::Value {
-                row.iter().map(|(name, value)| ((*name).to_owned(), json_value(value))).collect()
-            };
-            let mut object = json!({
-                "effort": format!("{:?}", plan.effort).to_lowercase(),
-                "not_measured": unmeasured,
-                "targets_met": all_met,
-            });
-            for (name, rows) in tables {
-                object[name] = rows.iter().map(row).collect();
-            }
-            writeln!(out, "{object:#}").map_err(output_error)
-        }
+            })
+        });
+        let columns = ["part", "row", "name", "value"];
+        return print_rows(&columns, &cells.collect::<Vec<_>>(), format, out);
     }
-}
-
-/// Prints rows with four significant digits, fewer than a clock gives; a single row as pairs.
-fn readable(rows: &[Row], out: &mut dyn Write) -> Result<()> {
-    let brief = |value: &Value| match value {
+    let brief = |(_, value): &(&str, Value)| match value {
         Value::Number(number) => brief_number(*number).parse().map_or(Value::Null, Value::Number),
-        Value::Bool(met) => if *met { "yes" } else { "NO" }.into(),
         other => other.clone(),
     };
-    if let [row] = rows {
-        let pairs: Vec<Vec<Value>> =
-            row.iter().map(|(name, value)| vec![(*name).into(), brief(value)]).collect();
-        return print_rows(&["quantity", "value"], &pairs, Format::Table, out);
+    for (part, rows) in parts.iter().filter(|(_, rows)| !rows.is_empty()) {
+        writeln!(out, "{part}").map_err(output_error)?;
+        let columns: Vec<&str> = rows[0].iter().map(|(name, _)| *name).collect();
+        let rows: Vec<Vec<Value>> =
+            rows.iter().map(|row| row.iter().map(brief).collect()).collect();
+        print_rows(&columns, &rows, format, out)?;
+        writeln!(out).map_err(output_error)?;
     }
-    let columns: Vec<&str> = rows[0].iter().map(|(name, _)| *name).collect();
-    let cells = |row: &Row| row.iter().map(|(_, value)| brief(value)).collect();
-    print_rows(&columns, &rows.iter().map(cells).collect::<Vec<_>>(), Format::Table, out)
+    Ok(())
+}
+
+/// The cost of a number of steps that took this wall time (s), ns per element and step.
+fn cost(seconds: f64, steps: u64, elements: usize) -> f64 {
+    1e9 * seconds / (steps as f64 * elements as f64)
+}
+
+/// The instruction sets of this machine, up to the one in use.
+fn sets(selected: InstructionSet) -> impl Iterator<Item = InstructionSet> {
+    let narrower = InstructionSet::ALL.into_iter().take_while(move |set| *set != selected);
+    narrower.chain([selected]).filter(|set| set.available())
 }

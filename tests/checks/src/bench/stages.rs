@@ -16,32 +16,28 @@ use billow_study::platform::error::{Error, Result};
 
 use super::capsule::Capsule;
 use super::machine::{Watch, core_share};
-use super::{Effort, Plan, Row};
+use super::{REPEATS, Row, cost};
 
-/// Steps in a block of the tunnelling monitor; a whole number of blocks is timed.
-const BLOCK: u64 = 50;
+/// Steps that are timed: whole blocks of 50 steps of the tunnelling monitor, fewer on a large mesh.
+const STEPS: [u64; 2] = [500, 200];
+/// Elements above which a mesh is large. Chosen.
+const LARGE: usize = 20_000;
 
 /// Times the stages from a state of this name; the costs are ns per element and step.
 ///
 /// # Errors
 /// A failure of the run.
-pub(super) fn measure(
-    capsule: &Capsule,
-    name: &str,
-    run: &FilmRun,
-    plan: &Plan<'_>,
-) -> Result<Row> {
+pub(super) fn measure(capsule: &Capsule, name: &str, run: &FilmRun) -> Result<Row> {
     let elements = run.elements();
-    let (steps, repeats) = (steps(plan.effort, elements), plan.repeats());
-    let share = 1e9 / (steps as f64 * elements as f64);
+    let steps = STEPS[usize::from(elements > LARGE)];
     let mut least = [f64::INFINITY; Stage::ALL.len()];
     let (mut whole, mut share_of_core, mut step) = (f64::INFINITY, None, f64::NAN);
-    for _ in 0..repeats {
+    for _ in 0..REPEATS {
         let (mut film, watch) = (run.film.clone(), Watch::start());
         take_steps(&mut film, &capsule.timeline, steps, &mut Untimed)?;
         let seconds = watch.seconds();
-        if share * seconds.0 < whole {
-            whole = share * seconds.0;
+        if cost(seconds.0, steps, elements) < whole {
+            whole = cost(seconds.0, steps, elements);
             share_of_core = core_share(seconds);
         }
         step = (film.view().state.time - run.view().state.time) / steps as f64;
@@ -49,11 +45,11 @@ pub(super) fn measure(
         take_steps(&mut film, &capsule.timeline, steps, &mut clock)?;
         clock.stop();
         for (least, total) in least.iter_mut().zip(clock.totals) {
-            *least = least.min(share * total.as_secs_f64());
+            *least = least.min(cost(total.as_secs_f64(), steps, elements));
         }
     }
     // One sample and one frame per sample interval, divided by the steps between.
-    let output = output(capsule, run, repeats) * step / capsule.timeline.sample_interval;
+    let output = output(capsule, run) * step / capsule.timeline.sample_interval;
     let output = 1e9 * output / elements as f64;
     let (whole, rate) = (whole + output, 1.0 / step);
     let mut row: Row = vec![
@@ -96,16 +92,6 @@ impl Stopwatch for Clock {
     }
 }
 
-/// Number of steps to time: whole blocks of the monitor, fewer for a large mesh.
-fn steps(effort: Effort, elements: usize) -> u64 {
-    let blocks = match effort {
-        Effort::Quick => 2,
-        Effort::Usual | Effort::Full if elements > 20_000 => 4,
-        Effort::Usual | Effort::Full => 10,
-    };
-    blocks * BLOCK
-}
-
 /// Takes a number of steps along a timeline, with the same interval ends as a run.
 ///
 /// # Errors
@@ -146,11 +132,11 @@ fn next_stop(timeline: &Timeline, breakpoints: &[f64], time: f64) -> f64 {
 }
 
 /// Shortest time of a sample and a frame, s.
-fn output(capsule: &Capsule, run: &FilmRun, repeats: usize) -> f64 {
+fn output(capsule: &Capsule, run: &FilmRun) -> f64 {
     let time = run.view().state.time;
     let phase = capsule.timeline.phase(time, time + capsule.timeline.sample_interval);
     let mut tracked = Vec::new();
-    let times = (0..repeats.max(3)).map(|_| {
+    let times = (0..REPEATS).map(|_| {
         let start = Instant::now();
         let sample = run.sample(&phase);
         tracked.clear();

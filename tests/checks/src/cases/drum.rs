@@ -21,9 +21,9 @@ use nalgebra::Vector3;
 use super::oscillation::frequency;
 use super::reference::{entry, rows};
 use super::rig::held;
-use super::row::richardson;
+use super::row::{converged, refined};
 use super::shapes::disc_rim;
-use super::{Outcome, Rig, Row};
+use super::{Outcome, Rig};
 
 /// CFL number. Chosen: a period takes thousands of steps, so the error of the step is about 1e-8.
 pub const CFL: f64 = 0.9;
@@ -124,18 +124,14 @@ pub fn drum(
 
 /// The drum, against its exact frequencies.
 pub fn stretched_disc(rig: &Rig) -> Outcome {
-    let [raw, band, least] = entry("stretched_disc", ["raw_band", "band", "order"]);
+    let bands = entry("stretched_disc", ["raw_band", "band", "order"]);
     let mut judged = Vec::new();
     for mode in drum_modes() {
         let explicit = (IntegratorKind::Explicit, CFL, SAMPLES);
-        let run = |rings: u32| Ok::<f64, String>(drum(rig, &mode, rings, explicit)?.0);
-        let expected = mode.frequency;
-        let values = [run(8)?, run(16)?, run(32)?];
-        let name = format!("({},{})", mode.diameters, mode.circles);
-        let quantity = format!("frequency {name}, finest mesh, Hz");
-        judged.push(Row::converging(&quantity, values, expected, raw, least));
-        let limit = richardson(values[1], values[2]);
-        judged.push(Row::new(&format!("frequency {name}, Richardson, Hz"), limit, expected, band));
+        let name = format!("frequency ({},{}), Hz", mode.diameters, mode.circles);
+        judged.extend(converged([8, 16, 32], [(&name, mode.frequency)], bands, |rings| {
+            Ok([drum(rig, &mode, rings, explicit)?.0])
+        })?);
     }
     Ok(judged)
 }
@@ -155,7 +151,8 @@ pub fn spinning_disc(rig: &Rig) -> Outcome {
     let mut judged = Vec::new();
     for row in rows("spinning_disc") {
         let (diameters, expected) = (row[0], row[2]);
-        let run = |rings: u32| -> Result<f64, String> {
+        let quantity = format!("p/Omega of mode ({diameters},{})", row[1]);
+        judged.extend(refined([4, 8, 16], [(&quantity, expected, band)], None, |rings| {
             let mut shell = disc(rings, radius);
             let shape: Vec<f64> = shell
                 .positions
@@ -181,11 +178,8 @@ pub fn spinning_disc(rig: &Rig) -> Outcome {
             let explicit = (IntegratorKind::Explicit, CFL);
             let mut film = displaced(rig, scene, &shape, share * radius, explicit)?;
             let found = ringing_frequency(&mut film, &shape, (period / 400.0, 3))?;
-            Ok(found * TAU / rate)
-        };
-        let values = [run(4)?, run(8)?, run(16)?];
-        let quantity = format!("p/Omega of mode ({diameters},{})", row[1]);
-        judged.push(Row::refined(&quantity, values, expected, band));
+            Ok([found * TAU / rate])
+        })?);
     }
     Ok(judged)
 }

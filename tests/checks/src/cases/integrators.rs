@@ -12,7 +12,7 @@ use billow_solver::scene::IntegratorKind;
 
 use super::reference::{number, numbers, rows};
 use super::row::self_convergence_order;
-use super::{Outcome, Rig, Row, drum, gas_piston, sphere_motion};
+use super::{Outcome, Rig, Row, drum, gas, sphere_motion};
 
 /// Level of the sphere's mesh.
 const LEVEL: u32 = 2;
@@ -20,25 +20,6 @@ const LEVEL: u32 = 2;
 const RINGS: u32 = 8;
 /// CFL number of the implicit integrator where samples bound its steps.
 const IMPLICIT_CFL: f64 = 0.45;
-
-/// What gives the step of a run of vibrating film.
-#[derive(Debug, Clone, Copy)]
-enum Step {
-    /// CFL number.
-    Cfl(f64),
-    /// Samples a period: implicit steps end there.
-    Samples(f64),
-}
-
-impl Step {
-    /// CFL number, and samples a period where they bound the steps.
-    fn parts(self) -> (f64, Option<f64>) {
-        match self {
-            Self::Cfl(cfl) => (cfl, None),
-            Self::Samples(samples) => (IMPLICIT_CFL, Some(samples)),
-        }
-    }
-}
 
 /// The row of an integrator: its values at four times, twice and once the step of `integrators/<scene>/<integrator>`.
 fn row(
@@ -63,19 +44,16 @@ fn row(
 /// The injected piston: CFL numbers; closed form.
 pub(super) fn piston(rig: &Rig) -> Outcome {
     let exact = number("injected_piston/position_at_50_ms");
-    let judged = IntegratorKind::ALL.map(|kind| {
-        row("piston", kind, exact, |cfl| {
-            Ok(gas_piston::height(&gas_piston::injected(rig, kind, cfl)?.view()))
-        })
-    });
+    let judged = IntegratorKind::ALL
+        .map(|kind| row("piston", kind, exact, |cfl| Ok(gas::injected(rig, kind, cfl)?.1)));
     judged.into_iter().collect()
 }
 
-/// A step of vibrating film in the unit of its number: CFL number, or period over samples.
-fn vibration_step(kind: IntegratorKind, step: f64) -> Step {
+/// A step of vibrating film: CFL number, and samples a period where implicit steps end.
+fn vibration_step(kind: IntegratorKind, step: f64) -> (f64, Option<f64>) {
     match kind {
-        IntegratorKind::Implicit => Step::Samples(1.0 / step),
-        IntegratorKind::Explicit | IntegratorKind::Hybrid => Step::Cfl(step),
+        IntegratorKind::Implicit => (IMPLICIT_CFL, Some(1.0 / step)),
+        IntegratorKind::Explicit | IntegratorKind::Hybrid => (step, None),
     }
 }
 
@@ -85,7 +63,7 @@ pub(super) fn sphere(rig: &Rig) -> Outcome {
     let [pressure, exact] = [rows[0][0], rows[0][1]];
     let judged = IntegratorKind::ALL.map(|kind| {
         row("sphere", kind, exact, |step| {
-            let (cfl, samples) = vibration_step(kind, step).parts();
+            let (cfl, samples) = vibration_step(kind, step);
             let interval = samples.map(|samples| 1.0 / (samples * exact));
             let (mut film, volume) =
                 sphere_motion::breathing_start(rig, LEVEL, pressure, (kind, Some(cfl)))?;
@@ -101,7 +79,7 @@ pub(super) fn disc(rig: &Rig) -> Outcome {
     let mode = modes.first().ok_or("no mode of the stretched disc in tests/reference")?;
     let judged = IntegratorKind::ALL.map(|kind| {
         row("disc", kind, mode.frequency, |step| {
-            let (cfl, samples) = vibration_step(kind, step).parts();
+            let (cfl, samples) = vibration_step(kind, step);
             let samples = samples.unwrap_or(drum::SAMPLES);
             Ok(drum::drum(rig, mode, RINGS, (kind, cfl, samples))?.0)
         })

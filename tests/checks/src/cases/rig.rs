@@ -1,16 +1,23 @@
 //! What the cases share: supports and inflow, advancing film, and the deliberate fault that a test
 //! may inject.
 
+use billow_solver::geometry::shell::Shell;
 use billow_solver::integrators::explicit::StoredExplicit;
 use billow_solver::integrators::{FilmSimulation, FilmView, StoredIntegrator};
 use billow_solver::models::film::capsule;
 use billow_solver::platform::fault_injection::Fault;
 use billow_solver::platform::simd::InstructionSet;
+use billow_solver::scene::Film;
+use billow_solver::scene::film_scene::Filling;
 use billow_solver::scene::film_scene::FilmScene;
 use billow_solver::scene::film_support::{FilmSupport, Hold};
 use billow_solver::scene::inflow::Inflow;
+use billow_solver::scene::paper::free_film;
 use billow_solver::scene::timeline::Phase;
+use billow_solver::statics::{self, StaticSolution};
 use billow_solver::system::PressureLoad;
+use nalgebra::Vector3;
+use std::ops::ControlFlow;
 
 /// How cases are run: as they are, or with a deliberate fault that a case must detect.
 #[derive(Debug, Clone, Copy)]
@@ -95,4 +102,46 @@ pub fn temperature(film: &FilmView<'_>) -> f64 {
         PressureLoad::Gas(gas) => gas.temperature(film.state.gas),
         PressureLoad::Overpressure(_) => f64::NAN,
     }
+}
+
+/// The static equilibrium of a scene; the search may start from the equilibrium at another overpressure (Pa).
+///
+/// # Errors
+/// Why no equilibrium was found.
+pub fn equilibrium(
+    rig: &Rig,
+    scene: &FilmScene,
+    known: Option<(&StaticSolution, f64)>,
+) -> Result<StaticSolution, String> {
+    let observer = &mut |_: &_| ControlFlow::Continue(());
+    statics::solve_from(&rig.on_instruction_set(scene), known, observer)
+        .map_err(|error| error.to_string())
+}
+
+/// The static equilibrium of film under an overpressure (Pa).
+///
+/// # Errors
+/// As [`equilibrium`].
+pub fn inflated(
+    rig: &Rig,
+    shell: Shell,
+    film: Film,
+    pressure: f64,
+    supports: Vec<FilmSupport>,
+) -> Result<StaticSolution, String> {
+    let filling = Filling::Pressure(pressure);
+    equilibrium(rig, &FilmScene { filling, supports, ..free_film(shell, film) }, None)
+}
+
+/// Mean of a quantity over nodes.
+pub fn mean(state: &StaticSolution, nodes: &[u32], of: impl Fn(Vector3<f64>) -> f64) -> f64 {
+    let sum: f64 = nodes.iter().map(|node| of(state.positions.get(*node as usize))).sum();
+    sum / nodes.len() as f64
+}
+
+/// Film, overpressure (Pa) and name of a row of a table of compliant film: E, t, p.
+pub fn compliant(row: &[f64]) -> (Film, f64, String) {
+    let film = Film { youngs_modulus: row[0], thickness: row[1], ..Film::PAPER_ELASTIC };
+    let name = format!("E {:e} Pa, {:.1} um, {} Pa", row[0], row[1] * 1e6, row[2]);
+    (film, row[2], name)
 }

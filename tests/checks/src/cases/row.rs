@@ -127,6 +127,51 @@ impl Row {
     }
 }
 
+/// The rows of quantities (name, reference, band) on three steps or meshes, each half as coarse as the one before. With
+/// `least`, every observed order must be that or more; otherwise the last one is reported.
+///
+/// # Errors
+/// That of a run.
+pub fn refined<const N: usize>(
+    meshes: [u32; 3],
+    quantities: [(&str, f64, f64); N],
+    least: Option<f64>,
+    mut run: impl FnMut(u32) -> Result<[f64; N], String>,
+) -> Result<Vec<Row>, String> {
+    let found = [run(meshes[0])?, run(meshes[1])?, run(meshes[2])?];
+    let row = |(index, (name, reference, band)): (usize, (&str, f64, f64))| {
+        let values = found.map(|values| values[index]);
+        match least {
+            Some(least) => Row::converging(name, values, reference, band, least),
+            None => Row::refined(name, values, reference, band),
+        }
+    };
+    Ok(quantities.into_iter().enumerate().map(row).collect())
+}
+
+/// The rows of quantities (name, reference) of taut film, of second order: the value of the finest of three meshes with
+/// the least order, and Richardson's extrapolation. Bands of both, and the least order.
+///
+/// # Errors
+/// That of a run.
+pub fn converged<const N: usize>(
+    meshes: [u32; 3],
+    quantities: [(&str, f64); N],
+    [raw, band, least]: [f64; 3],
+    mut run: impl FnMut(u32) -> Result<[f64; N], String>,
+) -> Result<Vec<Row>, String> {
+    let found = [run(meshes[0])?, run(meshes[1])?, run(meshes[2])?];
+    let rows = |(index, (name, reference)): (usize, (&str, f64))| {
+        let values = found.map(|values| values[index]);
+        let limit = (4.0 * values[2] - values[1]) / 3.0;
+        [
+            Row::converging(&format!("{name}, finest mesh"), values, reference, raw, least),
+            Row::new(&format!("{name}, Richardson"), limit, reference, band),
+        ]
+    };
+    Ok(quantities.into_iter().enumerate().flat_map(rows).collect())
+}
+
 /// The larger of two errors. NaN counts as the largest, unlike in `f64::max`.
 pub fn worse(a: f64, b: f64) -> f64 {
     if b <= a || a.is_nan() { a } else { b }
@@ -141,10 +186,4 @@ pub fn order(coarse: f64, fine: f64) -> f64 {
 /// Order of convergence from three values of halved steps (or meshes), without a reference value.
 pub fn self_convergence_order([coarse, middle, fine]: [f64; 3]) -> f64 {
     order(coarse - middle, middle - fine)
-}
-
-/// Richardson's extrapolation to step zero from two values of halved steps (or meshes), for second
-/// order.
-pub fn richardson(coarse: f64, fine: f64) -> f64 {
-    (4.0 * fine - coarse) / 3.0
 }

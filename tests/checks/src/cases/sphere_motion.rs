@@ -11,12 +11,11 @@ use billow_solver::models::film::Relaxation;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::{Film, GasSupply, IntegratorKind};
-use billow_solver::system::PressureLoad;
 
 use super::oscillation::{extrema, frequency};
 use super::reference::{entry, number, rows};
-use super::row::richardson;
-use super::{Outcome, Rig, Row};
+use super::row::converged;
+use super::{Outcome, Rig};
 
 /// Temperature of the gas, K. Chosen: that of the film, so that its mass follows from its pressure.
 const TEMPERATURE: f64 = 293.0;
@@ -108,20 +107,14 @@ pub fn breathing_sphere_fine(rig: &Rig) -> Outcome {
     breathing(rig, [3, 4, 5])
 }
 
-fn breathing(rig: &Rig, [coarse, middle, fine]: [u32; 3]) -> Outcome {
-    let [band, raw, least] = entry("breathing_sphere", ["band", "raw_band", "order"]);
+fn breathing(rig: &Rig, levels: [u32; 3]) -> Outcome {
+    let bands = entry("breathing_sphere", ["raw_band", "band", "order"]);
     let mut judged = Vec::new();
     for row in rows("breathing_sphere") {
-        let (pressure, expected) = (row[0], row[1]);
-        let values = [
-            radial_frequency(rig, coarse, pressure)?,
-            radial_frequency(rig, middle, pressure)?,
-            radial_frequency(rig, fine, pressure)?,
-        ];
-        let quantity = |what: &str| format!("frequency at {pressure} Pa, {what}, Hz");
-        judged.push(Row::converging(&quantity("finest mesh"), values, expected, raw, least));
-        let limit = richardson(values[1], values[2]);
-        judged.push(Row::new(&quantity("Richardson"), limit, expected, band));
+        let quantity = format!("frequency at {} Pa, Hz", row[0]);
+        judged.extend(converged(levels, [(&quantity, row[1])], bands, |level| {
+            Ok([radial_frequency(rig, level, row[0])?])
+        })?);
     }
     Ok(judged)
 }
@@ -130,9 +123,6 @@ fn breathing(rig: &Rig, [coarse, middle, fine]: [u32; 3]) -> Outcome {
 /// equilibrium.
 fn release(rig: &Rig, level: u32, pressure: f64) -> Result<[f64; 2], String> {
     let rest = equilibrium(rig, level, pressure)?;
-    let PressureLoad::Overpressure(_) = rest.view().system.pressure_load else {
-        unreachable!("relaxed under an overpressure")
-    };
     let empty = sphere(level);
     let start = empty.volume(|node| empty.positions[node as usize]);
     let species = nitrogen_supply().species;
@@ -151,17 +141,7 @@ fn release(rig: &Rig, level: u32, pressure: f64) -> Result<[f64; 2], String> {
 pub fn released_sphere(rig: &Rig) -> Outcome {
     let [pressure, lambda, period] =
         entry("breathing_sphere/released", ["p0", "largest_lambda", "period"]);
-    let [band, raw, least] = entry("breathing_sphere", ["band", "raw_band", "order"]);
-    let runs = [release(rig, 3, pressure)?, release(rig, 4, pressure)?, release(rig, 5, pressure)?];
-    let mut judged = Vec::new();
-    for (index, name, expected) in
-        [(0, "largest lambda - 1", lambda - 1.0), (1, "period, s", period)]
-    {
-        let values = runs.map(|run| run[index]);
-        let quantity = format!("{name}, finest mesh");
-        judged.push(Row::converging(&quantity, values, expected, raw, least));
-        let limit = richardson(values[1], values[2]);
-        judged.push(Row::new(&format!("{name}, Richardson"), limit, expected, band));
-    }
-    Ok(judged)
+    let bands = entry("breathing_sphere", ["raw_band", "band", "order"]);
+    let quantities = [("largest lambda - 1", lambda - 1.0), ("period, s", period)];
+    converged([3, 4, 5], quantities, bands, |level| release(rig, level, pressure))
 }

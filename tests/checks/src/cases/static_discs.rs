@@ -1,6 +1,6 @@
-//! Discs under pressure: one clamped, two joined at the rim.
+//! Discs under pressure: two clamped ones, one of compliant film, and two discs joined at the rim.
 //!
-//! The pressure on the clamped disc follows its surface. N0 is a nominal force, per reference width.
+//! The pressure on a clamped disc follows its surface. N0 is a nominal force, per reference width.
 //!
 //! The balloon is modelled by its upper half, whose rim slides in the plane of symmetry. The rim
 //! shortens by a quarter, so the mesh lies along the meridians. The reference is the shape of
@@ -10,15 +10,13 @@
 use billow_solver::geometry::shapes::{disc, ring_nodes};
 use billow_solver::mechanics::resultants::resultants;
 use billow_solver::scene::Film;
-use billow_solver::scene::film_scene::{Filling, FilmScene};
-use billow_solver::scene::paper::free_film;
 use nalgebra::Vector3;
 
-use super::reference::{entry, rows};
-use super::rig::held;
+use super::reference::{entry, number, rows};
+use super::rig::{compliant, held, inflated, mean};
+use super::row::refined;
 use super::shapes::{disc_rim, radial_disc};
-use super::static_equilibrium::{equilibrium, mean};
-use super::{Outcome, Rig, Row};
+use super::{Outcome, Rig};
 
 /// Thickness of the film of the clamped disc, m. Chosen: only E t matters.
 const THICKNESS: f64 = 1e-4;
@@ -35,11 +33,13 @@ pub fn clamped_disc(rig: &Rig) -> Outcome {
             thickness: THICKNESS,
             ..Film::PAPER_ELASTIC
         };
-        let run = |rings: u32| -> Result<[f64; 3], String> {
-            let filling = Filling::Pressure(pressure);
+        let names =
+            ["w0, m", "volume, m3", "N0, N/m"].map(|name| format!("{name}, at {pressure} Pa"));
+        let bands = [size, size, force];
+        let quantities = [0, 1, 2].map(|index| (&*names[index], row[4 + index], bands[index]));
+        judged.extend(refined([8, 16, 32], quantities, Some(least), |rings| {
             let supports = vec![held(disc_rim(rings), "xyz")];
-            let scene = FilmScene { filling, supports, ..free_film(disc(rings, radius), film) };
-            let (state, _) = equilibrium(rig, &scene)?;
+            let state = inflated(rig, disc(rings, radius), film, pressure, supports)?;
             // The first six elements surround the centre.
             let mean_force = |element| {
                 let nominal = resultants(&state.model, &state.positions, element).nominal;
@@ -47,51 +47,51 @@ pub fn clamped_disc(rig: &Rig) -> Outcome {
             };
             let middle = (0..6).map(mean_force).sum::<f64>() / 6.0;
             Ok([state.positions.z[0], state.volume, middle])
-        };
-        let values = [run(8)?, run(16)?, run(32)?];
-        let names = ["w0, m", "volume, m3", "N0, N/m"];
-        for (index, (name, band)) in names.into_iter().zip([size, size, force]).enumerate() {
-            let (name, values) = (format!("{name}, at {pressure} Pa"), values.map(|v| v[index]));
-            judged.push(Row::converging(&name, values, row[4 + index], band, least));
-        }
+        })?);
+    }
+    Ok(judged)
+}
+
+/// Height and volume of a disc of compliant film held at its rim.
+pub fn compliant_disc(rig: &Rig) -> Outcome {
+    let [radius, band] = entry("compliant", ["bottom_radius", "band"]);
+    let mut judged = Vec::new();
+    for row in rows("compliant/disc") {
+        let (film, pressure, name) = compliant(&row);
+        let [height, volume] = ["height, m", "volume, m3"].map(|what| format!("{what}, {name}"));
+        let quantities = [(&*height, row[3], band), (&*volume, row[4], band)];
+        judged.extend(refined([8, 16, 32], quantities, None, |rings| {
+            let supports = vec![held(disc_rim(rings), "xyz")];
+            let state = inflated(rig, disc(rings, radius), film, pressure, supports)?;
+            Ok([state.positions.z[0], state.volume])
+        })?);
     }
     Ok(judged)
 }
 
 /// Radius, thickness and volume of the balloon.
 pub fn mylar_balloon(rig: &Rig) -> Outcome {
-    let [radius, size, bulk] = entry("mylar_balloon", ["radius", "size_band", "volume_band"]);
+    let radius = number("mylar_balloon/radius");
+    let [size, bulk] = entry("mylar_balloon", ["size_band", "volume_band"]);
     let mut judged = Vec::new();
     for row in rows("mylar_balloon") {
         let pressure = row[0];
-        let run = |rings: u32| -> Result<([f64; 3], String), String> {
-            let filling = Filling::Pressure(pressure);
+        let names = ["r/a", "thickness/a", "V/a3"].map(|name| format!("{name} at {pressure} Pa"));
+        let bands = [size, size, bulk];
+        let quantities = [0, 1, 2].map(|index| (&*names[index], row[1 + index], bands[index]));
+        judged.extend(refined([8, 16, 32], quantities, None, |rings| {
             let around = 3 * rings;
             let rim = ring_nodes(0, around);
-            let supports = vec![held(rim.clone(), "z")];
-            let shell = radial_disc(rings, around, radius);
-            let (state, note) = equilibrium(
-                rig,
-                &FilmScene { filling, supports, ..free_film(shell, Film::PAPER_ELASTIC) },
-            )?;
+            let (shell, supports) =
+                (radial_disc(rings, around, radius), vec![held(rim.clone(), "z")]);
+            let state = inflated(rig, shell, Film::PAPER_ELASTIC, pressure, supports)?;
             let middle =
                 Vector3::new(mean(&state, &rim, |x| x.x), mean(&state, &rim, |x| x.y), 0.0);
-            let distance = |x: Vector3<f64>| (x - middle).norm();
-            let mean_radius = mean(&state, &rim, distance);
-            let dent = mean(&state, &rim, |x| (distance(x) - mean_radius).abs());
-            let cube = radius * radius * radius;
+            let rim = mean(&state, &rim, |x| (x - middle).norm());
             let pole = state.positions.get(state.positions.len() - 1);
-            let sizes = [mean_radius / radius, 2.0 * pole.z / radius, 2.0 * state.volume / cube];
-            let dent = dent / mean_radius;
-            Ok((sizes, format!("{note}; mean deviation of the rim from a circle {dent:.1e}")))
-        };
-        let (finest, note) = run(32)?;
-        let values = [run(8)?.0, run(16)?.0, finest];
-        let names = ["r/a", "thickness/a", "V/a3"];
-        for (index, (name, band)) in names.into_iter().zip([size, size, bulk]).enumerate() {
-            let (name, values) = (format!("{name} at {pressure} Pa"), values.map(|v| v[index]));
-            judged.push(Row::refined(&name, values, row[1 + index], band).with_note(&note));
-        }
+            let cube = radius * radius * radius;
+            Ok([rim / radius, 2.0 * pole.z / radius, 2.0 * state.volume / cube])
+        })?);
     }
     Ok(judged)
 }

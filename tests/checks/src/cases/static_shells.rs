@@ -1,4 +1,4 @@
-//! Closed shells under pressure: sphere, cylinder, cone.
+//! Shells of revolution under pressure: sphere, cylinder, cone, and a frustum of compliant film between rings.
 //!
 //! ```text
 //! sphere    p = (t/R) E/(1−ν) (λ²−1)/λ
@@ -13,17 +13,15 @@
 use core::f64::consts::PI;
 
 use billow_solver::geometry::shapes::{icosphere, revolved, ring_nodes};
+use billow_solver::geometry::shell::Shell;
 use billow_solver::mechanics::resultants::resultants;
 use billow_solver::scene::Film;
-use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
-use billow_solver::scene::paper::free_film;
 use nalgebra::Vector3;
 
-use super::reference::{entry, rows};
-use super::rig::held;
-use super::row::worse;
-use super::static_equilibrium::{equilibrium, mean};
+use super::reference::{entry, number, rows};
+use super::rig::{compliant, held, inflated, mean};
+use super::row::{refined, worse};
 use super::{Outcome, Rig, Row};
 
 /// Stretch of a sphere.
@@ -32,20 +30,24 @@ pub fn sphere(rig: &Rig) -> Outcome {
     let mut judged = Vec::new();
     for row in rows("static_sphere") {
         let (pressure, expected) = (row[0], row[1]);
-        let run = |level: u32| -> Result<f64, String> {
-            let filling = Filling::Pressure(pressure);
-            let scene =
-                FilmScene { filling, ..free_film(icosphere(level, radius), Film::PAPER_ELASTIC) };
-            let (state, _) = equilibrium(rig, &scene)?;
-            let loaded: f64 = state.positions.iter().map(|x| x.norm()).sum();
-            let unloaded: f64 = scene.shell.positions.iter().map(Vector3::norm).sum();
-            Ok(loaded / unloaded - 1.0)
-        };
-        let values = [run(2)?, run(3)?, run(4)?];
         let quantity = format!("lambda - 1 at {pressure} Pa");
-        judged.push(Row::converging(&quantity, values, expected, band, least));
+        judged.extend(refined([2, 3, 4], [(&quantity, expected, band)], Some(least), |level| {
+            let shell = icosphere(level, radius);
+            let unloaded: f64 = shell.positions.iter().map(Vector3::norm).sum();
+            let state = inflated(rig, shell, Film::PAPER_ELASTIC, pressure, Vec::new())?;
+            let loaded: f64 = state.positions.iter().map(|x| x.norm()).sum();
+            Ok([loaded / unloaded - 1.0])
+        })?);
     }
     Ok(judged)
+}
+
+/// The side of a frustum with these radii (m, bottom and top) and this height (m).
+fn side(along: u32, around: u32, [bottom, top]: [f64; 2], height: f64, crossed: bool) -> Shell {
+    revolved(along, around, crossed, |k| {
+        let s = f64::from(k) / f64::from(along);
+        [bottom + (top - bottom) * s, height * s]
+    })
 }
 
 /// A rigid plate on these nodes under a force along z.
@@ -61,31 +63,20 @@ pub fn cylinder(rig: &Rig) -> Outcome {
         ["radius", "length", "overpressure", "axial", "hoop", "band", "order"],
     );
     let stretched = radius * (1.0 + hoop);
-    let run = |along: u32| -> Result<[f64; 2], String> {
+    let quantities = [("lambda_hoop - 1", hoop, band), ("lambda_axial - 1", axial, band)];
+    refined([3, 6, 12], quantities, Some(least), |along| {
         let around = 8 * along;
-        let shell =
-            revolved(along, around, false, |k| [radius, length * f64::from(k) / f64::from(along)]);
+        let shell = side(along, around, [radius; 2], length, false);
         let top = ring_nodes(along, around);
-        let supports = vec![
-            held(ring_nodes(0, around), "z"),
-            plate(top.clone(), pressure * PI * stretched * stretched),
-        ];
-        let filling = Filling::Pressure(pressure);
-        let (state, _) = equilibrium(
-            rig,
-            &FilmScene { filling, supports, ..free_film(shell, Film::PAPER_ELASTIC) },
-        )?;
+        let end = plate(top.clone(), pressure * PI * stretched * stretched);
+        let supports = vec![held(ring_nodes(0, around), "z"), end];
+        let state = inflated(rig, shell, Film::PAPER_ELASTIC, pressure, supports)?;
         let all: Vec<u32> = (0..(along + 1) * around).collect();
         Ok([
             mean(&state, &all, |x| x.xy().norm()) / radius - 1.0,
             mean(&state, &top, |x| x.z) / length - 1.0,
         ])
-    };
-    let values = [run(3)?, run(6)?, run(12)?];
-    let row = |index: usize, name: &str, expected: f64| {
-        Row::converging(name, values.map(|value| value[index]), expected, band, least)
-    };
-    Ok(vec![row(0, "lambda_hoop - 1", hoop), row(1, "lambda_axial - 1", axial)])
+    })
 }
 
 /// Membrane forces of a cone far from its ends.
@@ -94,23 +85,19 @@ pub fn cone(rig: &Rig) -> Outcome {
         entry("cone", ["bottom_radius", "top_radius", "height", "overpressure", "band"]);
     let slope = (bottom - top) / height;
     let cos = 1.0 / (1.0 + slope * slope).sqrt();
-    let run = |along: u32| -> Result<[[f64; 2]; 2], String> {
+    let mut largest = [0.0; 2];
+    let mut run = |along: u32| -> Result<[f64; 2], String> {
         let around = 4 * along;
-        let shell = revolved(along, around, false, |k| {
-            let s = f64::from(k) / f64::from(along);
-            [bottom + (top - bottom) * s, height * s]
-        });
+        let end = ring_nodes(along, around);
         let supports = vec![
             held(ring_nodes(0, around), "xyz"),
-            held(ring_nodes(along, around), "xy"),
-            plate(ring_nodes(along, around), pressure * PI * top * top),
+            held(end.clone(), "xy"),
+            plate(end, pressure * PI * top * top),
         ];
-        let filling = Filling::Pressure(pressure);
-        let (state, _) = equilibrium(
-            rig,
-            &FilmScene { filling, supports, ..free_film(shell, Film::PAPER_ELASTIC) },
-        )?;
-        let (mut sum, mut worst, mut count) = ([0.0; 2], [0.0; 2], 0.0);
+        let shell = side(along, around, [bottom, top], height, false);
+        let state = inflated(rig, shell, Film::PAPER_ELASTIC, pressure, supports)?;
+        let (mut sum, mut count) = ([0.0; 2], 0.0);
+        largest = [0.0; 2];
         for (element, triangle) in state.model.triangles.iter().enumerate() {
             let corners = triangle.map(|node| state.positions.get(node as usize));
             let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
@@ -121,20 +108,51 @@ pub fn cone(rig: &Rig) -> Outcome {
                 let force = resultants(&state.model, &state.positions, element).cauchy;
                 for (index, expected) in [hoop, 0.5 * hoop].into_iter().enumerate() {
                     sum[index] += force[index] / expected;
-                    worst[index] = worse(worst[index], (force[index] / expected - 1.0).abs());
+                    largest[index] = worse(largest[index], (force[index] / expected - 1.0).abs());
                 }
                 count += 1.0;
             }
         }
-        Ok([sum.map(|sum| sum / count), worst])
+        Ok(sum.map(|sum| sum / count))
     };
-    let values = [run(12)?, run(24)?, run(48)?];
-    let mut judged = Vec::new();
-    for (index, name) in ["N_hoop", "N_meridional"].into_iter().enumerate() {
-        let means = values.map(|[mean, _]| mean[index]);
-        judged.push(Row::refined(&format!("{name}/(closed form), mean"), means, 1.0, band));
-        let largest = values[2][1][index];
+    let names = ["N_hoop", "N_meridional"];
+    let quantities = ["N_hoop/(closed form), mean", "N_meridional/(closed form), mean"];
+    let mut judged =
+        refined([12, 24, 48], quantities.map(|name| (name, 1.0, band)), None, &mut run)?;
+    for (name, largest) in names.into_iter().zip(largest) {
         judged.push(Row::at_most(&format!("{name}, largest error of an element"), largest, band));
     }
     Ok(judged)
+}
+
+/// Largest radius and volume of a frustum of compliant film whose rims are held.
+pub fn compliant_frustum(rig: &Rig) -> Outcome {
+    let [bottom, top, height] = entry("compliant", ["bottom_radius", "top_radius", "height"]);
+    let band = number("compliant/band");
+    let mut judged = Vec::new();
+    for row in rows("compliant/frustum") {
+        let (film, pressure, name) = compliant(&row);
+        let [radius, volume] =
+            ["largest radius, m", "volume, m3"].map(|what| format!("{what}, {name}"));
+        let quantities = [(&*radius, row[3], band), (&*volume, row[4], band)];
+        judged.extend(refined([8, 16, 32], quantities, None, |along| {
+            let around = 3 * along;
+            let shell = side(along, around, [bottom, top], height, true);
+            let rims = [0, along].map(|ring| held(ring_nodes(ring, around), "xyz"));
+            let state = inflated(rig, shell, film, pressure, rims.to_vec())?;
+            let radius = |ring: u32| mean(&state, &ring_nodes(ring, around), |x| x.xy().norm());
+            Ok([largest(&(0..=along).map(radius).collect::<Vec<_>>()), state.volume])
+        })?);
+    }
+    Ok(judged)
+}
+
+/// Top of the parabola through the largest of some values and its neighbours.
+fn largest(values: &[f64]) -> f64 {
+    let inner = values.windows(3).max_by(|a, b| a[1].total_cmp(&b[1]));
+    inner.map_or(f64::NAN, |window| {
+        let slope = 0.5 * (window[2] - window[0]);
+        let bend = window[2] - 2.0 * window[1] + window[0];
+        window[1] - 0.5 * slope * slope / bend
+    })
 }

@@ -21,8 +21,8 @@ use billow_solver::scene::paper::free_film;
 use nalgebra::Vector3;
 
 use super::reference::{entry, number, rows};
-use super::rig::held;
-use super::static_equilibrium::equilibrium;
+use super::rig::{equilibrium, held};
+use super::row::refined;
 use super::{Outcome, Rig, Row};
 
 /// Height and half length of the beam, m.
@@ -30,8 +30,8 @@ const BEAM: f64 = 0.2;
 /// Strain of its most stretched fibre. Chosen: small, so that the geometry hardly changes.
 const STRAIN: f64 = 1e-4;
 
-/// k and 2M/(P h) of a beam whose curvature and force give about the requested k.
-fn bend(rig: &Rig, rows: u32, requested: f64) -> Result<[f64; 2], String> {
+/// 2M/(P h) of a beam whose curvature and force give about the requested k.
+fn bend(rig: &Rig, rows: u32, requested: f64) -> Result<f64, String> {
     let film = Film::PAPER_ELASTIC;
     let stiffness = film.youngs_modulus * film.thickness;
     // The whole section is stretched while k ≤ 1: P = E t h ε_mean, ε_max = ε_mean + κ h/2.
@@ -61,15 +61,14 @@ fn bend(rig: &Rig, rows: u32, requested: f64) -> Result<[f64; 2], String> {
         held(foot, "y"),
         held(all, "z"),
     ];
-    let (state, _) = equilibrium(rig, &FilmScene { supports, ..free_film(shell, film) })?;
+    let state = equilibrium(rig, &FilmScene { supports, ..free_film(shell, film) }, None)?;
     let (mut force, mut moment) = (0.0, 0.0);
     for node in wall {
         let reaction = state.forces.x[node as usize];
         force += reaction;
         moment += reaction * (reference.positions[node as usize].y - 0.5 * BEAM);
     }
-    let found = 0.5 * stiffness * BEAM * BEAM * curvature / force;
-    Ok([found, (2.0 * moment / (force * BEAM)).abs()])
+    Ok((2.0 * moment / (force * BEAM)).abs())
 }
 
 /// The strip in bending.
@@ -78,17 +77,16 @@ pub fn beam(rig: &Rig) -> Outcome {
     let mut judged = Vec::new();
     for row in rows("beam") {
         let (requested, expected) = (row[0], row[1]);
-        let values =
-            [bend(rig, 8, requested)?, bend(rig, 16, requested)?, bend(rig, 32, requested)?];
         let quantity = format!("2M/(P h) at k {requested}");
-        let row = Row::refined(&quantity, values.map(|[_, value]| value), expected, band);
-        judged.push(row.with_note(&format!("k {:.6}", values[2][0])));
+        judged.extend(refined([8, 16, 32], [(&quantity, expected, band)], None, |rows| {
+            bend(rig, rows, requested).map(|moment| [moment])
+        })?);
     }
     Ok(judged)
 }
 
-/// Torque and wrinkle radius of an annulus in torsion by this angle, rad; and a note.
-fn twist(rig: &Rig, rings: u32, angle: f64) -> Result<([f64; 2], String), String> {
+/// Torque and wrinkle radius of an annulus in torsion by this angle, rad.
+fn twist(rig: &Rig, rings: u32, angle: f64) -> Result<[f64; 2], String> {
     let [inner, outer, outward] =
         entry("annulus_torsion", ["inner_radius", "outer_radius", "outward"]);
     let around = 6 * rings;
@@ -109,8 +107,8 @@ fn twist(rig: &Rig, rings: u32, angle: f64) -> Result<([f64; 2], String), String
     let all: Vec<u32> = (0..(rings + 1) * around).collect();
     let hub = FilmSupport { motion: Some(motion), ..held(ring_nodes(0, around), "xyz") };
     let supports = vec![hub, held(ring_nodes(rings, around), "xyz"), held(all, "z")];
-    let (state, note) =
-        equilibrium(rig, &FilmScene { supports, ..free_film(pulled, Film::PAPER_ELASTIC) })?;
+    let scene = FilmScene { supports, ..free_film(pulled, Film::PAPER_ELASTIC) };
+    let state = equilibrium(rig, &scene, None)?;
     let cells = around as usize * 2;
     let last = (0..rings as usize).rev().find(|ring| {
         let elements = ring * cells..(ring + 1) * cells;
@@ -120,7 +118,7 @@ fn twist(rig: &Rig, rings: u32, angle: f64) -> Result<([f64; 2], String), String
         2 * wrinkled.count() > cells
     });
     let wrinkle = last.map_or(inner, |ring| radius(u32::try_from(ring + 1).unwrap_or(rings)));
-    Ok(([state.reactions[0].moment.z.abs(), wrinkle], note))
+    Ok([state.reactions[0].moment.z.abs(), wrinkle])
 }
 
 /// The annulus at four angles.
@@ -131,19 +129,19 @@ pub fn annulus_torsion(rig: &Rig) -> Outcome {
     let mut judged = Vec::new();
     for row in rows("annulus_torsion") {
         let (angle, torque, radius) = (row[0], row[1], row[2]);
-        let (values, note) = twist(rig, finest, angle)?;
-        let coarse = [twist(rig, finest / 4, angle)?.0[0], twist(rig, finest / 2, angle)?.0[0]];
-        let torques = [coarse[0], coarse[1], values[0]];
         let quantity = format!("torque at {angle} rad, N m");
-        judged.push(Row::refined(&quantity, torques, torque, band).with_note(&note));
+        let mut wrinkle = f64::NAN;
+        let meshes = [finest / 4, finest / 2, finest];
+        judged.extend(refined(meshes, [(&quantity, torque, band)], None, |rings| {
+            let [torque, found] = twist(rig, rings, angle)?;
+            wrinkle = found;
+            Ok([torque])
+        })?);
         let element = (outer - inner) / f64::from(finest);
+        let quantity = format!("error of the wrinkle radius at {angle} rad, elements");
         judged.push(
-            Row::at_most(
-                &format!("error of the wrinkle radius at {angle} rad, elements"),
-                (values[1] - radius).abs() / element,
-                1.0,
-            )
-            .with_note(&format!("{:.4} m", values[1])),
+            Row::at_most(&quantity, (wrinkle - radius).abs() / element, 1.0)
+                .with_note(&format!("{wrinkle:.4} m")),
         );
     }
     Ok(judged)

@@ -36,7 +36,7 @@ pub(super) fn square_airbag(rig: &Rig) -> Result<SceneRuns, String> {
     )
     .at_rest();
     for cells in CELLS {
-        let ((state, _), wall) = timed(|| static_airbag::inflated(rig, cells))?;
+        let (state, wall) = timed(|| static_airbag::inflated(rig, cells))?;
         let (elements, steps) = (state.model.elements() as f64, f64::from(state.iterations));
         let meter = Meter { elements, steps, implicit: true, wall, ..Meter::default() };
         let values = [state.potential_energy, state.positions.z[0], 8.0 * state.volume];

@@ -1,14 +1,13 @@
 //! The injected piston, by film with every integrator and by the model piston.
 
 use billow_solver::integrators::entry;
-use billow_solver::models::run::Model;
 use billow_solver::scene::{IntegratorKind, Stepping};
 use billow_study::analysis::work_precision::{Ending, SceneRuns};
 use billow_study::input::value::Value;
 
 use super::meter::{Meter, Scene, quantity, timed};
 use crate::cases::reference::number;
-use crate::cases::{Rig, gas_piston, piston_model};
+use crate::cases::{Rig, gas};
 
 /// CFL numbers of the injected piston: each halves the step.
 const PISTON_CFL: [f64; 7] = [0.64, 0.32, 0.16, 0.08, 0.04, 0.02, 0.01];
@@ -25,7 +24,7 @@ const FIXED_STEPS: [f64; 5] = [8e-4, 4e-4, 2e-4, 1e-4, 5e-5];
 /// so errors end near 1e-12.
 pub(super) fn injected_piston(rig: &Rig) -> Result<SceneRuns, String> {
     let [end, start] = ["end", "start"].map(|key| number(&format!("injected_piston/{key}")));
-    let exact = gas_piston::injected_exact(end);
+    let exact = gas::injected_exact(end);
     let simulated = end - start;
     let quantities = vec![quantity("x", "m", "position at 50 ms", Some(exact))];
     let mut scene = Scene::new(
@@ -44,26 +43,26 @@ pub(super) fn injected_piston(rig: &Rig) -> Result<SceneRuns, String> {
         .iter()
         .flat_map(|(kind, count)| PISTON_CFL.iter().take(*count).map(move |cfl| (*kind, *cfl)));
     for (kind, cfl) in pairs {
-        let (mut film, wall) = timed(|| gas_piston::injected(rig, kind, cfl))?;
+        let ((mut film, height), wall) = timed(|| gas::injected(rig, kind, cfl))?;
         let meter = Meter::of(&mut film, wall);
         let integrator = entry(kind).name.into();
         let method = ["film".into(), integrator, cfl.into(), Value::Null, Value::Null];
-        scene.add(method, &meter, Ending::Trusted, &[gas_piston::height(&film.view())]);
+        scene.add(method, &meter, Ending::Trusted, &[height]);
     }
     let adaptive = TOLERANCES.map(Stepping::Adaptive);
     let fixed = FIXED_STEPS.map(Stepping::Fixed);
     // A run takes less than a millisecond; the first of a process also pays for what is done once.
-    let _ = piston_model::injected(Stepping::Adaptive(TOLERANCES[0]))?;
+    let _ = gas::injected_model(Stepping::Adaptive(TOLERANCES[0]))?;
     for stepping in adaptive.into_iter().chain(fixed) {
         let (tolerance, step) = match stepping {
             Stepping::Adaptive(tolerance) => (tolerance.into(), Value::Null),
             Stepping::Fixed(step) | Stepping::Stable(step) => (Value::Null, step.into()),
         };
-        let (run, wall) = timed(|| piston_model::injected(stepping))?;
-        let steps = run.steps() as f64;
+        let ((steps, height), wall) = timed(|| gas::injected_model(stepping))?;
+        let steps = steps as f64;
         let meter = Meter { steps, simulated, wall, ..Meter::default() };
         let method = ["piston".into(), Value::Null, Value::Null, tolerance, step];
-        scene.add(method, &meter, Ending::Trusted, &[run.state().height]);
+        scene.add(method, &meter, Ending::Trusted, &[height]);
     }
     Ok(scene.runs())
 }
