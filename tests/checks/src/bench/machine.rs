@@ -12,9 +12,8 @@ use billow_study::platform::provenance;
 
 use super::Row;
 
-/// Repeats of a measurement, of which the fastest counts, and rounds of the arithmetic in one. Chosen: a second in all.
+/// Repeats of a measurement, of which the fastest counts. Chosen: a second in all.
 const REPEATS: u32 = 10;
-const ROUNDS: u64 = 2_000_000;
 /// Bytes of a buffer larger than the private cache of a core. Chosen.
 const LARGE: usize = 64 << 20;
 /// Bytes of a buffer within that cache. Chosen.
@@ -32,25 +31,10 @@ pub(super) fn row(set: InstructionSet) -> Row {
     ]
 }
 
-<<<<<<< HEAD
 /// Speed of memory on one core.
-pub(super) fn speed(plan: &Plan<'_>) -> Row {
-    let repeats = if plan.effort == Effort::Quick { 3 } else { 10 };
+pub(super) fn speed() -> Row {
     vec![
-        ("copy_bytes_per_second", copy(LARGE, repeats, 1).into()),
-=======
-/// Speed of arithmetic and memory on one core.
-pub(super) fn speed(set: InstructionSet) -> Row {
-    let multiply_adds = |_| {
-        let start = Instant::now();
-        let (pairs, sum) = probe::multiply_add(set, black_box(ROUNDS));
-        black_box(sum);
-        pairs as f64 / start.elapsed().as_secs_f64()
-    };
-    vec![
-        ("multiply_adds_per_second", (0..REPEATS).map(multiply_adds).fold(0.0, f64::max).into()),
         ("copy_bytes_per_second", copy(LARGE, 1).into()),
->>>>>>> 5b4f45d (Measure only what is read, and give each reference case one function)
         ("copy_bytes", LARGE.into()),
         ("cached_copy_bytes_per_second", copy(SMALL, 200).into()),
         ("cached_copy_bytes", SMALL.into()),

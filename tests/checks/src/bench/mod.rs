@@ -41,7 +41,7 @@ const MIN_CORE_SHARE: f64 = 0.95;
 /// A part of the bench.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Part {
-    /// Arithmetic and memory of the machine.
+    /// Memory of the machine.
     Machine,
     /// The step without contact and its membrane kernel, on each instruction set.
     Kernels,
@@ -95,7 +95,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let mut machine = machine::row(set);
     if args.has(Part::Machine) {
         args.note("machine");
-        machine.extend(machine::speed(set));
+        machine.extend(machine::speed());
     }
     let (mut kernels, mut stages, mut runs) = (Vec::new(), Vec::new(), Vec::new());
     for n in args.subdivisions.iter().copied() {
