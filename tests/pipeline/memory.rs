@@ -114,10 +114,9 @@ fn mesh(vertices: usize, faces: usize) -> TestFolder {
 
 #[test]
 fn a_mesh_file_that_does_not_fit_is_one_clear_error() {
-    for (vertices, faces, counts) in [
-        (3_000_000, 0, "3000000 lines, 3000000 vertices, 0 elements"),
-        (10, 200_000, "200010 lines, 10 vertices, 200000 elements"),
-    ] {
+    for (vertices, faces, counts) in
+        [(3_000_000, 0, " MB: about"), (10, 200_000, "has 200000 elements: about")]
+    {
         let folder = mesh(vertices, faces);
         let output = limited(&folder, 400_000, &["solve", "scene.json"]);
         let said = stderr(&output);

@@ -1,5 +1,7 @@
 //! A JSON tree in file order, before its keys get a meaning.
 
+use std::fmt::{self, Write as _};
+
 use serde::ser::{Serialize, Serializer};
 
 /// A JSON value: objects in file order, no key twice, whole numbers distinct from others.
@@ -58,55 +60,19 @@ impl Json {
             Self::Object(_) => "an object",
         }
     }
-
-    /// The value as written, on one line, cut to the length of an error's line.
-    pub fn brief(&self) -> String {
-        /// Characters of a value in an error (chosen: key and value fit on one line).
-        const MAX_LENGTH: usize = 60;
-        let mut text = String::new();
-        write_json(self, &mut text, MAX_LENGTH);
-        if text.chars().count() > MAX_LENGTH {
-            text = text.chars().take(MAX_LENGTH - 1).collect();
-            text.push('…');
-        }
-        text
-    }
 }
 
-/// Writes compact JSON; stops soon after `max_length` bytes.
-fn write_json(value: &Json, text: &mut String, max_length: usize) {
-    if text.len() > max_length {
-        return;
-    }
-    match value {
-        Json::Null => text.push_str("null"),
-        Json::Bool(value) => text.push_str(if *value { "true" } else { "false" }),
-        Json::Integer(value) => text.push_str(&value.to_string()),
-        Json::Number(value) => text.push_str(&serde_json::Value::from(*value).to_string()),
-        Json::Text(value) => text.push_str(&serde_json::Value::from(value.as_str()).to_string()),
-        Json::List(items) => {
-            text.push('[');
-            for (index, item) in items.iter().enumerate() {
-                text.push_str(if index > 0 { ", " } else { "" });
-                write_json(item, text, max_length);
-                if text.len() > max_length {
-                    return;
-                }
+/// The value on one line, cut to the length of an error's line.
+impl fmt::Display for Json {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        /// Characters of a value in an error (chosen: key and value fit on one line).
+        const MAX_LENGTH: usize = 60;
+        let text = serde_json::to_string(self).map_err(|_| fmt::Error)?;
+        match text.char_indices().nth(MAX_LENGTH) {
+            None => f.write_str(&text),
+            Some(_) => {
+                text.chars().take(MAX_LENGTH - 1).chain(['…']).try_for_each(|c| f.write_char(c))
             }
-            text.push(']');
-        }
-        Json::Object(members) => {
-            text.push('{');
-            for (index, (key, item)) in members.iter().enumerate() {
-                text.push_str(if index > 0 { ", " } else { "" });
-                text.push_str(&serde_json::Value::from(key.as_str()).to_string());
-                text.push_str(": ");
-                write_json(item, text, max_length);
-                if text.len() > max_length {
-                    return;
-                }
-            }
-            text.push('}');
         }
     }
 }
@@ -157,8 +123,6 @@ mod tests {
         let json = parse(r#"{"b": 8, "a": [8.0, "x", null, true]}"#, "f").unwrap();
         let Json::Object(members) = &json else { panic!("{json:?}") };
         assert_eq!(members[0], ("b".to_owned(), Json::Integer(8)));
-        assert_eq!(json.brief(), r#"{"b": 8, "a": [8.0, "x", null, true]}"#);
-        let written = serde_json::to_string(&json).unwrap();
-        assert_eq!(written, r#"{"b":8,"a":[8.0,"x",null,true]}"#);
+        assert_eq!(json.to_string(), r#"{"b":8,"a":[8.0,"x",null,true]}"#);
     }
 }

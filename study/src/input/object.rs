@@ -39,7 +39,7 @@ impl<'a> Object<'a> {
                 let near = or_nearest(name, names.iter().copied());
                 let problem = format!("is not a key of {what}{near}");
                 let key = format!("{path}.{name}");
-                return Err(source.error(&key, &value.brief(), problem, names.join(", ")));
+                return Err(source.error(&key, value, problem, names.join(", ")));
             }
         }
         Ok(Self { json, path: path.to_owned(), keys, names, source })
@@ -58,7 +58,7 @@ impl<'a> Object<'a> {
         problem: impl Into<String>,
         allowed: impl Into<String>,
     ) -> InputError {
-        let value = self.given(name).map(Json::brief).unwrap_or_default();
+        let value = self.given(name).map(Json::to_string).unwrap_or_default();
         self.source.error(&format!("{}.{name}", self.path), &value, problem, allowed)
     }
 
@@ -182,7 +182,7 @@ pub(crate) fn read(
 ) -> Result<Value, InputError> {
     let value = read_silently(key, json, path, source)?;
     if let Some(implausible) = plausible::check(key, json, &value) {
-        source.warn(path, &json.brief(), implausible);
+        source.warn(path, json, implausible);
     }
     Ok(value)
 }
@@ -195,7 +195,7 @@ pub(crate) fn read_silently(
     source: &Source,
 ) -> Result<Value, InputError> {
     key.read(json).map_err(|refusal| {
-        source.error(path, &json.brief(), refusal.problem, refusal.allowed).with_hint(
+        source.error(path, json, refusal.problem, refusal.allowed).with_hint(
             match plausible::meant(key, json) {
                 Some(text) => format!("if {text} is meant, write {text:?}"),
                 None => format!("write it as in {}", key.sample()),
@@ -214,7 +214,7 @@ pub(crate) fn read_number(
     match read(key, json, path, source)? {
         Value::Number(number) if number.is_finite() => Ok(number),
         Value::Integer(number) => Ok(number as f64),
-        _ => Err(source.error(path, &json.brief(), "is a word, not a number", key.allowed())),
+        _ => Err(source.error(path, json, "is a word, not a number", key.allowed())),
     }
 }
 
@@ -242,7 +242,7 @@ pub(crate) fn members<'a>(
         Json::Object(members) => Ok(members),
         other => {
             let problem = format!("is {}, not an object", other.kind());
-            Err(source.error(path, &other.brief(), problem, allowed))
+            Err(source.error(path, other, problem, allowed))
         }
     }
 }
@@ -258,7 +258,7 @@ pub(crate) fn list<'a>(
         Json::List(items) => Ok(items),
         other => {
             let problem = format!("is {}, not a list", other.kind());
-            Err(source.error(path, &other.brief(), problem, allowed))
+            Err(source.error(path, other, problem, allowed))
         }
     }
 }

@@ -89,7 +89,7 @@ impl Settings {
         if cp <= gas_constant {
             return Err(source.error(
                 CP,
-                &shown(cp),
+                shown(cp),
                 "leaves no heat capacity at constant volume, cp - R",
                 format!("above the gas constant, {gas_constant} J/(kg K)"),
             ));

@@ -28,36 +28,23 @@ pub fn excerpt(text: &str, offset: usize) -> String {
     let offset = text.floor_char_boundary(offset);
     let (number, column) = line_and_column(text, offset);
     let start = text[..offset].rfind('\n').map_or(0, |end| end + 1);
-    let end = text[offset..].find('\n').map_or(text.len(), |length| offset + length);
-    let line = text[start..end].trim_end_matches('\r');
+    let line = text[start..].lines().next().unwrap_or_default();
     let length = line.chars().count();
-    let before = column - 1;
     // The place stands in the middle of a line that is cut.
-    let first = if length <= MAX_SHOWN { 0 } else { before.saturating_sub(MAX_SHOWN / 2) };
-    let first = first.min(length.saturating_sub(MAX_SHOWN));
-    let mut shown = String::new();
-    let mut caret = 0;
-    if first > 0 {
-        shown.push('…');
-        caret += 1;
-    }
-    for (index, c) in line.chars().enumerate().skip(first).take(MAX_SHOWN) {
-        let cell = match c {
-            '\t' => " ".repeat(TAB_WIDTH),
-            c if quote::acts(c) => c.escape_unicode().to_string(),
-            c => c.to_string(),
-        };
-        if index < before {
-            caret += cell.chars().count();
-        }
-        shown.push_str(&cell);
-    }
-    if first + MAX_SHOWN < length {
-        shown.push('…');
-    }
-    let gutter = number.to_string();
-    let blank = " ".repeat(gutter.len());
-    format!("  {gutter} | {shown}\n  {blank} | {}^", " ".repeat(caret))
+    let first = if length <= MAX_SHOWN { 0 } else { (column - 1).saturating_sub(MAX_SHOWN / 2) };
+    let cell = |c: char| match c {
+        '\t' => " ".repeat(TAB_WIDTH),
+        c if quote::acts(c) => c.escape_unicode().to_string(),
+        c => c.to_string(),
+    };
+    let cells = || line.chars().skip(first).take(MAX_SHOWN).map(cell);
+    let [before, after] =
+        [first > 0, first + MAX_SHOWN < length].map(|cut| if cut { "…" } else { "" });
+    let shown = cells().collect::<String>();
+    let caret: usize = cells().take(column - 1 - first).map(|cell| cell.chars().count()).sum();
+    let blank = " ".repeat(number.to_string().len());
+    let space = " ".repeat(before.chars().count() + caret);
+    format!("  {number} | {before}{shown}{after}\n  {blank} | {space}^")
 }
 
 #[cfg(test)]

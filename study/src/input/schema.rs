@@ -1,7 +1,7 @@
 //! The JSON Schemas (2020-12) of the study file and the scene file, built from the tables of keys.
 //!
 //! A schema says what each key may hold. The program itself checks which values are allowed together
-//! (a fit and what it needs, a key given or varied), and the values of an axis.
+//! (a fit and what it needs, a key given or varied), the unit of a quantity, and the values of an axis.
 
 use std::fmt::Write as _;
 
@@ -11,7 +11,7 @@ use crate::input::keys::listing::{FileKind, Parts};
 use crate::input::keys::{
     self, Default, FLAT, GRAVITY, KEYS, Key, KeyKind, NEAR, Quantity, RANGE_KEYS, SEARCH_KEYS,
 };
-use crate::input::units::{self, Dimension};
+use crate::input::units::Dimension;
 use crate::input::value::{Value, json_value};
 
 /// Names a strategy may have.
@@ -20,10 +20,6 @@ const NAME: &str = "^[A-Za-z_][A-Za-z0-9_]{0,63}$";
 const RECORDED: &str = "^[A-Za-z0-9_.-]{1,64}$";
 /// Displacement components: letters of xyz, each at most once.
 const COMPONENTS: &str = "^(?!.*(.).*\\1)[xyz]{1,3}$";
-/// A number at the start of a text.
-const NUMBER: &str = r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*";
-/// A unit of several symbols or powers; the program checks which ones it reads.
-const COMPOUND: &str = r"[^\s0-9][^\s]*[/^*·0-9 ].*";
 
 /// The schema of a study file.
 pub fn study_schema() -> Json {
@@ -33,11 +29,10 @@ pub fn study_schema() -> Json {
         "A question about inflatable capsules: one design, film, gas and solver, and a grid of what varies. A number is SI; a text carries its unit.",
     );
     schema["properties"]["checksum"] = json!({
-        "title": "checksum",
         "description": "That of study.json in a results folder; ignored in a study file.",
         "type": "string",
     });
-    schema["$defs"]["axis"] = axis();
+    schema["$defs"] = json!({"axis": axis()});
     schema
 }
 
@@ -77,16 +72,15 @@ fn schema(file: FileKind, title: &str, description: &str) -> Json {
         }
         let required = keys.iter().filter(|key| matches!(key.default, Default::Required));
         let required: Vec<&str> = required.map(|key| key.path).collect();
-        let title = title_of(parent.trim_end_matches("[]"));
         let object_schema = json!({
-            "title": title, "type": "object", "additionalProperties": false, "required": required,
+            "type": "object", "additionalProperties": false, "required": required,
         });
         extend(object, object_schema);
     }
     for (path, meaning) in table.sections.iter().chain(table.structured).chain(meanings) {
         if !path.starts_with("grid.") {
             let schema = place(&mut root, path);
-            extend(schema, json!({"title": title_of(path), "description": meaning}));
+            extend(schema, json!({"description": meaning}));
             extend(schema, form(file, path));
         }
     }
@@ -96,14 +90,9 @@ fn schema(file: FileKind, title: &str, description: &str) -> Json {
     object["required"] = json!(["gas_constant", "cp"]);
     let names = object.as_object_mut().and_then(|object| object.remove("enum"));
     *species = json!({
-        "title": "species",
         "description": object["description"],
         "oneOf": [{"enum": names, "default": object["default"]}, object],
     });
-    root["$defs"] = Dimension::all()
-        .map(|dimension| (definition(dimension), quantity_text(dimension)))
-        .collect::<Map<_, _>>()
-        .into();
     root
 }
 
@@ -128,22 +117,19 @@ fn extend(schema: &mut Json, more: Json) {
     }
 }
 
-/// What a key with more than one value may hold, beside the keys of its object.
+/// What a key with more than one value may hold, beside the keys of its object. A keyword of one type, as
+/// `minimum`, concerns no value of another type.
 fn form(file: FileKind, path: &str) -> Json {
-    let error = json!({"oneOf": [
-        {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1},
-        {"type": "string", "pattern": r"^\s*[0-9.]+(e-?[0-9]+)?\s*%?\s*$"},
-    ]});
+    let error = json!({"type": ["number", "string"], "exclusiveMinimum": 0, "exclusiveMaximum": 1});
     let meshes = |least: u32| {
         let mesh = json!({"type": "integer", "minimum": 1});
         json!({"type": "array", "items": mesh, "minItems": least, "maxItems": 3, "uniqueItems": true})
     };
-    let numbers = json!({"type": "integer", "minimum": 0});
     match path {
-        "accuracy" => json!({"oneOf": [error["oneOf"][0], error["oneOf"][1], {
-            "type": "object", "properties": {"meshes": meshes(1)}, "additionalProperties": error,
-            "minProperties": 1,
-        }]}),
+        "accuracy" => json!({
+            "type": ["number", "string", "object"], "exclusiveMinimum": 0, "exclusiveMaximum": 1,
+            "properties": {"meshes": meshes(1)}, "additionalProperties": error, "minProperties": 1,
+        }),
         "solver.meshes" => meshes(2),
         "solver.stepping" => json!({"maxProperties": 1}),
         "strategies" => json!({"type": "object", "additionalProperties": false}),
@@ -151,14 +137,14 @@ fn form(file: FileKind, path: &str) -> Json {
         "supports" if file == FileKind::Study => {
             json!({"default": [{"on": "bottom_ring", "fix": "xyz"}]})
         }
-        "units" => json!({
-            "type": "object", "additionalProperties": {"type": "string", "minLength": 1},
+        "units" => json!({"type": "object", "additionalProperties": {"type": "string"}}),
+        "limits" => json!({
+            "type": "object",
+            "additionalProperties": {
+                "type": ["boolean", "string"],
+                "pattern": "^(deployed|partial|stalled| *[<>]=? *[-+]?[0-9.].*)$",
+            },
         }),
-        "limits" => json!({"type": "object", "additionalProperties": {"oneOf": [
-            {"type": "boolean"},
-            {"enum": ["deployed", "partial", "stalled"]},
-            {"type": "string", "pattern": "^ *[<>]=? *[-+]?[0-9.]"},
-        ]}}),
         "grid" => {
             let mut grid = axes();
             let point = json!({"type": "object", "minProperties": 1});
@@ -174,32 +160,33 @@ fn form(file: FileKind, path: &str) -> Json {
             replicates
         }
         "gravity" => {
-            let [along, vector] = GRAVITY.each_ref().map(property);
-            let items = json!({
-                "type": "array", "items": vector["items"], "minItems": 3, "maxItems": 3,
-            });
-            json!({"default": 0.0, "oneOf": [items, {"oneOf": along["oneOf"]}]})
+            let [mut along, vector] = GRAVITY.each_ref().map(property);
+            extend(&mut along, vector);
+            along["type"] = json!(["number", "string", "array"]);
+            along
         }
         "mesh.reference" => {
             let KeyKind::Quantity(length) = FLAT else { unreachable!("a length") };
             let corner = json!({
-                "type": "array", "items": quantity_forms(length), "minItems": 2, "maxItems": 3,
+                "type": "array", "items": quantity_form(length), "minItems": 2, "maxItems": 3,
             });
             let face = json!({"type": "array", "items": corner, "minItems": 3});
-            json!({"oneOf": [{"type": "string"}, {"type": "array", "items": face}]})
+            json!({"type": ["string", "array"], "items": face})
         }
-        "mesh.closure" => json!({"oneOf": [
-            {"type": "string"}, {"type": "array", "items": {"type": "string"}},
-        ]}),
-        "supports[].nodes" => json!({"type": "array", "items": numbers, "minItems": 1}),
+        "mesh.closure" => json!({"type": ["string", "array"], "items": {"type": "string"}}),
+        "supports[].nodes" => {
+            json!({"type": "array", "items": {"type": "integer", "minimum": 0}, "minItems": 1})
+        }
         "outputs.nodes" | "outputs.elements" => {
-            let pick = json!({"oneOf": [numbers, property(&NEAR)]});
-            let named = json!({
-                "type": "object", "patternProperties": {RECORDED: pick},
+            let mut pick = property(&NEAR);
+            pick["type"] = json!(["integer", "array"]);
+            let mut named = json!({
+                "type": ["object", "array"], "patternProperties": {RECORDED: pick},
                 "additionalProperties": false,
             });
-            let items = json!({"oneOf": [numbers, named]});
-            json!({"oneOf": [named, {"type": "array", "items": items}]})
+            named["items"] = named.clone();
+            named["items"]["type"] = json!(["object", "integer"]);
+            named
         }
         "outputs" | "mesh" | "start" | "supports[].move" => json!({"type": "object"}),
         _ => json!({}),
@@ -237,7 +224,7 @@ fn axis() -> Json {
     json!({"oneOf": [{"type": "array", "minItems": 1}, range, search]})
 }
 
-/// A key with its title, description, default and example.
+/// A key with its description, default and example.
 fn property(key: &Key) -> Json {
     let mut description = key.meaning();
     match key.default {
@@ -257,7 +244,7 @@ fn property(key: &Key) -> Json {
             let _ = write!(description, " Plausible: {plausible}.");
         }
     }
-    let mut schema = json!({"title": title_of(key.path), "description": description});
+    let mut schema = json!({"description": description});
     let default = key.default_value();
     if default != Value::Null {
         schema["default"] = json_value(&default);
@@ -272,7 +259,7 @@ fn property(key: &Key) -> Json {
 /// What a key may hold.
 fn kind(key: &Key) -> Json {
     match key.kind {
-        KeyKind::Quantity(quantity) => quantity_forms(quantity),
+        KeyKind::Quantity(quantity) => quantity_form(quantity),
         KeyKind::Integer(min, max) => json!({"type": "integer", "minimum": min, "maximum": max}),
         KeyKind::Choice(words) => {
             json!({"enum": words.iter().map(|word| word.name).collect::<Vec<_>>()})
@@ -281,46 +268,17 @@ fn kind(key: &Key) -> Json {
         KeyKind::Text => json!({"type": "string"}),
         KeyKind::Flag => json!({"type": "boolean"}),
         KeyKind::Vector(quantity) => {
-            let mut component = quantity_forms(quantity);
-            if let (true, Json::Array(forms)) =
-                (matches!(key.path, "min" | "max"), &mut component["oneOf"])
-            {
-                forms.push(json!({"type": "null"}));
+            let mut component = quantity_form(quantity);
+            if matches!(key.path, "min" | "max") {
+                component["type"] = json!(["number", "string", "null"]);
             }
             json!({"type": "array", "items": component, "minItems": 3, "maxItems": 3})
         }
     }
 }
 
-/// A quantity as a number, as a text with a unit, as a word.
-fn quantity_forms(quantity: Quantity) -> Json {
+/// A quantity as a number, or as a text: with a unit, or a word.
+fn quantity_form(quantity: Quantity) -> Json {
     let min = if quantity.above { "exclusiveMinimum" } else { "minimum" };
-    let number = json!({"type": "number", min: quantity.min, "maximum": quantity.max});
-    let text = json!({"$ref": format!("#/$defs/{}", definition(quantity.dimension))});
-    let words: Vec<&str> = quantity.words.iter().map(|(word, _)| *word).collect();
-    if words.is_empty() {
-        return json!({"oneOf": [number, text]});
-    }
-    json!({"oneOf": [number, text, {"enum": words}]})
-}
-
-/// Name of the definition of a dimension's texts.
-fn definition(dimension: Dimension) -> String {
-    let name = dimension.name();
-    name.split_once(' ').map_or(name, |(_, name)| name).replace(' ', "_")
-}
-
-/// A number with a unit of the dimension, as far as a pattern can say it.
-fn quantity_text(dimension: Dimension) -> Json {
-    let symbols = units::symbols(dimension).join("|");
-    let mut alone = if symbols.is_empty() { String::new() } else { format!("{symbols}|") };
-    if dimension.units().iter().any(|unit| unit.starts_with("1/")) {
-        alone.push_str(r"1\s*/.+|");
-    }
-    json!({"type": "string", "pattern": format!(r"{NUMBER}({alone}{COMPOUND})\s*$")})
-}
-
-/// The last part of a path, in words.
-fn title_of(path: &str) -> String {
-    path.rsplit('.').next().unwrap_or(path).replace('_', " ")
+    json!({"type": ["number", "string"], min: quantity.min, "maximum": quantity.max})
 }

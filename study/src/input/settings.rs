@@ -149,7 +149,7 @@ impl Settings {
             if given("adaptive") && given("fixed") {
                 return Err(source.error(
                     "solver.stepping",
-                    &stepping.brief(),
+                    stepping,
                     "gives both adaptive and fixed",
                     "one of {\"adaptive\": 1e-6}, {\"fixed\": \"10 us\"}",
                 ));
@@ -234,7 +234,7 @@ impl Settings {
         Err(source
             .error(
                 key,
-                &Json::Text(name.to_owned()).brief(),
+                Json::Text(name.to_owned()),
                 format!("is not a strategy of this study{near}"),
                 known.join(", "),
             )
@@ -403,7 +403,7 @@ pub(crate) fn check_sample_interval(
     }
     Err(source.error(
         "outputs.sample_interval",
-        &shown(interval),
+        shown(interval),
         format!("samples a run of {} s more than {MAX_SAMPLES:.0} times", shown(end_time)),
         format!("at least {} s for this end_time", shown(end_time / MAX_SAMPLES)),
     ))
@@ -427,5 +427,5 @@ fn unknown(
     } else if let Some(elsewhere) = table.find(name) {
         let _ = write!(problem, "; did you mean {}?", table.keys[elsewhere].path);
     }
-    source.error(path, &value.brief(), problem, known.join(", "))
+    source.error(path, value, problem, known.join(", "))
 }

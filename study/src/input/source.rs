@@ -1,8 +1,9 @@
 //! Where a value comes from, for errors: the file, or a `--set` flag.
 
 use std::cell::RefCell;
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 
+use crate::input::json::Json;
 use crate::input::plausible::Implausible;
 use crate::platform::error::InputError;
 
@@ -35,16 +36,16 @@ impl Source {
     }
 
     /// Keeps a warning about a value that is read. Further values of a list are counted.
-    pub fn warn(&self, key: &str, value: &str, implausible: Implausible) {
+    pub fn warn(&self, key: &str, value: &Json, implausible: Implausible) {
         let place = key.rsplit_once('[').filter(|(_, index)| index.ends_with(']'));
         let place = place.map_or(key, |(place, _)| place);
         // A list may have numbers with and without a unit.
-        let kind = if value.starts_with('"') { "with a unit" } else { "" };
+        let kind = if let Json::Text(_) = value { "with a unit" } else { "" };
         self.keep(format!("{place} {kind}"), "value of this list", key, value, implausible);
     }
 
     /// Keeps a warning about a point of the study. Further points are counted.
-    pub fn warn_point(&self, key: &str, value: &str, implausible: Implausible) {
+    pub fn warn_point(&self, key: &str, value: impl Display, implausible: Implausible) {
         self.keep(format!("point {key}"), "point", key, value, implausible);
     }
 
@@ -53,7 +54,7 @@ impl Source {
         place: String,
         noun: &'static str,
         key: &str,
-        value: &str,
+        value: impl Display,
         implausible: Implausible,
     ) {
         let mut warnings = self.warnings.borrow_mut();
@@ -87,7 +88,7 @@ impl Source {
     pub fn error(
         &self,
         key: &str,
-        value: &str,
+        value: impl Display,
         problem: impl Into<String>,
         allowed: impl Into<String>,
     ) -> InputError {
@@ -99,7 +100,7 @@ impl Source {
         InputError {
             file: flag.map_or_else(|| self.file.clone(), |(_, flag)| flag.clone()),
             key: key.to_owned(),
-            value: value.to_owned(),
+            value: value.to_string(),
             problem: problem.into(),
             allowed: allowed.into(),
             hint: String::new(),

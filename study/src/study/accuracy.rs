@@ -60,13 +60,13 @@ impl Accuracy {
                 let near = or_nearest(name, names());
                 let problem = format!("is not a measure with a known mesh error{near}");
                 let allowed = names().collect::<Vec<_>>().join(", ");
-                return Err(source.error(&path, &value.brief(), problem, allowed));
+                return Err(source.error(&path, value, problem, allowed));
             };
             accuracy.tolerances[index] = Some(tolerance(value, &path, source)?);
         }
         if accuracy.tolerances.iter().all(Option::is_none) {
             let allowed = "measures and their relative errors, as in {\"t_90_z_rim\": 0.02}";
-            return Err(source.error(ACCURACY, &json.brief(), "names no measure", allowed));
+            return Err(source.error(ACCURACY, json, "names no measure", allowed));
         }
         Ok(Some(accuracy))
     }
@@ -136,8 +136,8 @@ impl Accuracy {
     fn shown(&self) -> String {
         let of_number = |tolerance: Option<f64>| all_but_peak_vz(tolerance) == self.tolerances;
         match self.tolerances.into_iter().find(|tolerance| of_number(*tolerance)) {
-            Some(Some(tolerance)) => Json::Number(tolerance).brief(),
-            _ => Json::Object(self.members()).brief(),
+            Some(Some(tolerance)) => Json::Number(tolerance).to_string(),
+            _ => Json::Object(self.members()).to_string(),
         }
     }
 }
@@ -151,7 +151,7 @@ pub(crate) fn features(point: &Point) -> Option<(&Scene, Features)> {
 /// A relative error of a study file.
 fn tolerance(json: &Json, path: &str, source: &Source) -> Result<f64, InputError> {
     relative_error_in(json)
-        .ok_or_else(|| source.error(path, &json.brief(), "is not a relative error", RELATIVE_ERROR))
+        .ok_or_else(|| source.error(path, json, "is not a relative error", RELATIVE_ERROR))
 }
 
 /// Refuses a mesh that the file gives beside an accuracy, which chooses it.
@@ -161,7 +161,7 @@ pub(super) fn refuse_given_mesh(tree: &Json, source: &Source) -> Result<(), Inpu
         if let Some(value) = tree.get(section).and_then(|section| section.get(key)) {
             let path = format!("{section}.{key}");
             let problem = "is given beside accuracy, which chooses the meshes";
-            return Err(source.error(&path, &value.brief(), problem, "one of the two"));
+            return Err(source.error(&path, value, problem, "one of the two"));
         }
     }
     Ok(())

@@ -50,13 +50,13 @@ pub(super) fn find(
         let allowed =
             "strategies.<name>.release_time, .preinflation_mass, .inflow[0].mass_flow_rate, …";
         let problem = "is not a key of that strategy";
-        return Err(source.error(path, &value.brief(), problem, allowed));
+        return Err(source.error(path, value, problem, allowed));
     }
     let same_leaf: Vec<&str> =
         KEYS.iter().filter(|key| key.leaf() == name).map(|key| key.path).collect();
     if same_leaf.len() > 1 {
         let problem = "is the name of several keys";
-        return Err(source.error(path, &value.brief(), problem, same_leaf.join(", ")));
+        return Err(source.error(path, value, problem, same_leaf.join(", ")));
     }
     let (words, use_of_keys): (&[&str], _) = match section {
         Section::Grid => (&["zip", "points", "filter"], "a grid can vary"),
@@ -68,5 +68,5 @@ pub(super) fn find(
     let problem = format!("is not a key that {use_of_keys}{near}");
     let mut allowed = vec!["keys of the study, as N or film.thickness".to_owned()];
     allowed.extend((!words.is_empty()).then(|| words.join(", ")));
-    Err(source.error(path, &value.brief(), problem, allowed.join("; ")))
+    Err(source.error(path, value, problem, allowed.join("; ")))
 }

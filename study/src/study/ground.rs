@@ -36,7 +36,7 @@ pub(super) fn mass_at_ambient_pressure(
     if residual_mass > 0.0 {
         return Err(source.error(
             "gas.residual_gas_mass",
-            &shown(residual_mass),
+            shown(residual_mass),
             "is given beside residual_gas ambient, which follows from gas.ambient_pressure",
             "one of the two; residual_gas stored for a given mass",
         ));
@@ -56,7 +56,7 @@ pub(super) fn check_gas_inside(gas: &GasSupply, source: &Source) -> Result<(), I
     }
     Err(source.error(
         "gas.ambient_pressure",
-        &shown(gas.ambient_pressure),
+        shown(gas.ambient_pressure),
         "presses on a stowed capsule without gas inside, which implodes",
         "gas inside from the start, or 0 (orbit)",
     ).with_hint("store air: \"residual_gas\": \"ambient\" fills the folds at ambient pressure; \"stored\" takes a \

@@ -92,7 +92,7 @@ impl Inflow<'_> {
             (Some(_), Some(mass)) => {
                 return Err(source.error(
                     &format!("{path}.mass"),
-                    &shown(mass),
+                    shown(mass),
                     "the window gives both its end and its mass",
                     "`to` or `mass`",
                 ));
@@ -104,7 +104,7 @@ impl Inflow<'_> {
         if to <= from && (to < from || window.to.is_some()) {
             return Err(source.error(
                 &format!("{path}.to"),
-                &shown(to),
+                shown(to),
                 "the window ends before it begins",
                 format!("above its `from`, {} s", shown(from)),
             ));

@@ -39,12 +39,7 @@ impl Grid {
         let source = context.source;
         let meshes = read_list(json, MESHES, COUNT, source)?;
         let refuse = |problem: &str| {
-            source.error(
-                MESHES,
-                &json.brief(),
-                problem,
-                "a study in which nothing else varies the mesh",
-            )
+            source.error(MESHES, json, problem, "a study in which nothing else varies the mesh")
         };
         let name = short_name(SUBDIVISIONS).to_owned();
         let column = Column { name, key: &KEYS[SUBDIVISIONS], index: SUBDIVISIONS };
@@ -108,7 +103,7 @@ pub(super) fn read_list(
             format!("is not {} to {} meshes in ascending order", count.start(), count.end())
         }
     };
-    Err(source.error(path, &json.brief(), problem, allowed))
+    Err(source.error(path, json, problem, allowed))
 }
 
 /// Refuses models without a mesh: their runs on each would be equal.
@@ -128,10 +123,5 @@ pub(super) fn refuse_other_models(
     let Some(other) = other.filter(|_| !meshes.is_empty()) else { return Ok(()) };
     let problem = format!("has meshes, and the model {} has none", keys::model(other).name);
     let found = Json::List(meshes.iter().map(|n| Json::Integer(i64::from(*n))).collect());
-    Err(source.error(
-        MESHES,
-        &found.brief(),
-        problem,
-        "a study in which every point has the model film",
-    ))
+    Err(source.error(MESHES, found, problem, "a study in which every point has the model film"))
 }

@@ -339,7 +339,7 @@ fn study_name(settings: &Settings, stem: &str, source: &Source) -> Result<String
     }
     let mut error = source.error(
         "name",
-        &Json::Text(name.to_owned()).brief(),
+        Json::Text(name.to_owned()),
         "cannot be the name of a results folder",
         "up to 100 letters, digits, - _ and dots, not starting with a dot or -",
     );

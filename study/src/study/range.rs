@@ -30,7 +30,7 @@ pub(super) fn values(
     source: &Source,
     max_points: usize,
 ) -> Result<Vec<Value>, InputError> {
-    let refuse = |problem: &str| source.error(path, &json.brief(), problem, ALLOWED);
+    let refuse = |problem: &str| source.error(path, json, problem, ALLOWED);
     let (KeyKind::Quantity(_) | KeyKind::Integer(..)) = key.kind else {
         return Err(refuse("is a range of a key that does not hold numbers"));
     };

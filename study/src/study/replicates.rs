@@ -32,9 +32,9 @@ impl Grid {
         let source = context.source;
         let Json::Object(members) = json else {
             let problem = format!("is {}, not an object of keys", json.kind());
-            let mut error = source.error(REPLICATES, &json.brief(), problem, EXAMPLE);
+            let mut error = source.error(REPLICATES, json, problem, EXAMPLE);
             if let Json::Integer(_) | Json::List(_) = json {
-                error.hint = format!("\"{REPLICATES}\": {{\"seed\": {}}}", json.brief());
+                error.hint = format!("\"{REPLICATES}\": {{\"seed\": {json}}}");
             }
             return Err(error);
         };
@@ -48,7 +48,7 @@ impl Grid {
                 Json::List(_) | Json::Object(_) => value,
                 other => {
                     let problem = format!("is {}, not replicates", other.kind());
-                    return Err(source.error(&path, &other.brief(), problem, ALLOWED));
+                    return Err(source.error(&path, other, problem, ALLOWED));
                 }
             };
             self.read_axis(column, values, &path, AxisKind::Replicates, context)?;
@@ -56,7 +56,7 @@ impl Grid {
             let twice = (1..rows.len()).find(|index| rows[..*index].contains(&rows[*index]));
             if let Some(index) = twice {
                 let problem = format!("has the value {} twice", rows[index][0].short());
-                return Err(source.error(&path, &value.brief(), problem, "each value once"));
+                return Err(source.error(&path, value, problem, "each value once"));
             }
         }
         Ok(())
@@ -85,7 +85,7 @@ fn seeds(count: i64, path: &str, json: &Json, context: Context<'_>) -> Result<Js
     if !fits {
         let problem = "is not a number of seeds";
         let allowed = format!("1 to {max_points}, or {ALLOWED}");
-        return Err(source.error(path, &json.brief(), problem, allowed));
+        return Err(source.error(path, json, problem, allowed));
     }
     Ok(Json::List((1..=count).map(Json::Integer).collect()))
 }

@@ -110,7 +110,7 @@ fn check_release(
     }
     Err(source.error(
         &key,
-        &shown(release_time),
+        shown(release_time),
         "the run ends before the capsule is released",
         format!("below solver.end_time, {} s", shown(end_time)),
     ))
@@ -126,7 +126,7 @@ fn stepping(
     match (keys::model(model).has_stable_step, settings.number(FIXED)) {
         (true, Some(step)) => Err(source.error(
             FIXED,
-            &shown(step),
+            shown(step),
             "the models storeys and film take a fraction of their stable step",
             "solver.cfl in its place; only the model piston takes a fixed step",
         )),

@@ -30,12 +30,12 @@ pub(super) fn read(json: Option<&Json>, source: &Source) -> Result<Vec<ResultLim
         let column = column(name).ok_or_else(|| unknown(name, &path, value, source))?;
         if limits.iter().any(|known| known.measure == column.id) {
             let problem = format!("limits {} twice", column.name);
-            return Err(source.error(&path, &value.brief(), problem, "each measure once"));
+            return Err(source.error(&path, value, problem, "each measure once"));
         }
         let condition = condition(column, value, &path, source)?;
         let text = match value {
             Json::Text(text) => text.trim().to_owned(),
-            other => other.brief(),
+            other => other.to_string(),
         };
         limits.push(ResultLimit { measure: column.id, condition, text });
     }
@@ -75,7 +75,7 @@ fn condition(
         CellType::Text => verdict(json, path, source),
         CellType::Bool => match json {
             Json::Bool(value) => Ok(Condition::Is(Value::Bool(*value))),
-            _ => Err(source.error(path, &json.brief(), "is not a truth value", "true, false")),
+            _ => Err(source.error(path, json, "is not a truth value", "true, false")),
         },
         CellType::Integer | CellType::Number => bound(column, json, path, source),
     }
@@ -91,7 +91,7 @@ fn verdict(json: &Json, path: &str, source: &Source) -> Result<Condition, InputE
     }
     let names = VERDICTS.map(Verdict::name);
     let near = or_nearest(word, names.iter().copied());
-    Err(source.error(path, &json.brief(), format!("is not a verdict{near}"), names.join(", ")))
+    Err(source.error(path, json, format!("is not a verdict{near}"), names.join(", ")))
 }
 
 fn bound(
@@ -110,7 +110,7 @@ fn bound(
             dimension.si()
         ),
     };
-    let refuse = |problem: &str| Err(source.error(path, &json.brief(), problem, allowed.clone()));
+    let refuse = |problem: &str| Err(source.error(path, json, problem, allowed.clone()));
     let Json::Text(text) = json else {
         return refuse("does not say on which side the measure must be");
     };
@@ -140,7 +140,7 @@ fn unknown(name: &str, path: &str, value: &Json, source: &Source) -> InputError 
     let problem = format!("is not a measure that can have a limit{near}");
     let mut error = source.error(
         path,
-        &value.brief(),
+        value,
         problem,
         "verdict, peak_vz, film_stress_99, t_deployed_since_release and other measures",
     );

@@ -37,11 +37,11 @@ pub(super) fn read(
             let path = format!("units.{name}");
             let Json::Text(symbol) = value else {
                 let problem = format!("is {}, not a unit", value.kind());
-                return Err(source.error(&path, &value.brief(), problem, ALLOWED));
+                return Err(source.error(&path, value, problem, ALLOWED));
             };
             let (name, si) = quantity(name, &path, value, settings, source)?;
             DisplayUnit::new(symbol, si)
-                .map_err(|problem| source.error(&path, &value.brief(), problem, ALLOWED))?;
+                .map_err(|problem| source.error(&path, value, problem, ALLOWED))?;
             units.set(&name, symbol);
         }
     }
@@ -84,7 +84,7 @@ pub(super) fn quantity(
     let known = known.map(|(index, _)| keys::short_name(index));
     let near = or_nearest(name, known.chain(COLUMNS.iter().map(|column| column.name)));
     let problem = format!("is neither a key of the study nor a column of its table{near}");
-    Err(source.error(path, &value.brief(), problem, "keys, as mass_flow_rate; columns, as peak_vz"))
+    Err(source.error(path, value, problem, "keys, as mass_flow_rate; columns, as peak_vz"))
 }
 
 /// Calls `found` with every name that the grid varies, and what it gives: lists, ranges, values.

@@ -18,7 +18,6 @@ const CASES: &str = include_str!("cases.txt");
 
 /// Files with a mistake: name and content.
 const FILES: &[(&str, &[u8])] = &[
-    ("bom.json", b"\xEF\xBB\xBF{}"),
     ("binary.json", b"{\"question\": \"\xFF\"}"),
     ("list.json", b"[1, 2]"),
     ("huge.json", b"{\"gravity\": 1e999}"),

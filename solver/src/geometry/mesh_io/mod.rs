@@ -3,4 +3,3 @@
 pub mod fold;
 pub mod obj;
 pub mod obj_reader;
-pub mod obj_size;

@@ -18,11 +18,9 @@ const VELOCITY: KeyKind = vector(Dimension::Velocity, 1e5);
 
 /// What a support of a scene acts on.
 const SUPPORT_TARGETS: &[words::Word] = &[
-    explained("ring", "a ring of a design; with which"),
-    explained("cap", "a cap of a design; with which"),
-    plain("bottom_ring"),
+    explained("bottom_ring", "a ring of a design"),
     plain("top_ring"),
-    plain("bottom_cap"),
+    explained("bottom_cap", "a cap of a design"),
     plain("top_cap"),
     explained("box", "nodes with min <= position <= max at the start"),
     explained("nodes", "nodes by number"),
@@ -59,8 +57,6 @@ pub static SUPPORT_KEYS: &[Key] = &[
     key("on", KeyKind::Choice(SUPPORT_TARGETS), Required, "\"box\"", "What it acts on."),
     key("name", KeyKind::Text, Absent("the word of on, numbered where there are several"), "\"rim\"",
         "Name of its reaction in the summary."),
-    key("which", KeyKind::Choice(&[plain("bottom"), plain("top")]), Absent("needed for ring and cap"), "\"bottom\"",
-        "Which ring or cap."),
     key("min", POSITION, Absent("unbounded; so is a null component"), "[null, null, -0.001]",
         "Lower corner of the box."),
     key("max", POSITION, Absent("unbounded; so is a null component"), "[null, null, 0.001]",

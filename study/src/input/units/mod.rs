@@ -41,16 +41,6 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, UnitError> {
     })
 }
 
-/// Every single symbol that may be the unit of a quantity of the dimension. Products and powers are
-/// units too.
-pub fn symbols(dimension: Dimension) -> Vec<String> {
-    let mut symbols = symbol::symbols(dimension.powers());
-    if dimension == Dimension::Temperature {
-        symbols.extend(CELSIUS.map(str::to_owned));
-    }
-    symbols
-}
-
 /// Whether a text is a unit, as "g/s".
 pub fn is_unit(text: &str) -> bool {
     CELSIUS.contains(&text) || symbol::unit(text).is_ok()

@@ -132,21 +132,6 @@ fn symbol(name: &str) -> Option<Scale> {
     })
 }
 
-/// Every single symbol, with every prefix, of a unit with these powers.
-pub(super) fn symbols(powers: Powers) -> Vec<String> {
-    let mut symbols = Vec::new();
-    for (symbol, _, _, _, prefixed) in KNOWN.iter().filter(|known| known.1 == powers) {
-        symbols.push((*symbol).to_owned());
-        if *prefixed {
-            symbols.extend(PREFIXES.iter().map(|(prefix, _)| format!("{prefix}{symbol}")));
-        }
-    }
-    if powers == [0, 0, 0, 0, 1, 0] {
-        symbols.extend(["deg", "°"].map(str::to_owned));
-    }
-    symbols
-}
-
 /// Length of the longest unit read, bytes (chosen: a unit is a few symbols).
 const MAX_UNIT_LENGTH: usize = 64;
 

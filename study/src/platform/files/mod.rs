@@ -160,26 +160,6 @@ pub fn read_at_most(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>>> {
     Ok((bytes.len() as u64 <= limit).then_some(bytes))
 }
 
-/// Calls `visit` with each part of a file that the user named, in order. Returns `false` when the file is
-/// larger than `limit` bytes.
-///
-/// # Errors
-/// The error of the system.
-pub fn scan_at_most(path: &Path, limit: u64, visit: &mut dyn FnMut(&[u8])) -> io::Result<bool> {
-    let (mut file, mut part, mut length) = (File::open(path)?, vec![0; PART], 0);
-    loop {
-        let read = file.read(&mut part)?;
-        length += read as u64;
-        if read == 0 || length > limit {
-            return Ok(read == 0);
-        }
-        visit(&part[..read]);
-    }
-}
-
-/// Length of a part of [`scan_at_most`], bytes. Chosen: large against the cost of a call.
-const PART: usize = 64 << 10;
-
 /// The text of /proc/self/status; `None` where the system has none.
 pub fn process_status() -> Option<String> {
     fs::read_to_string("/proc/self/status").ok()

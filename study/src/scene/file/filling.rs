@@ -37,7 +37,7 @@ pub(super) fn read(
         {
             return Err(source.error(
                 &format!("gas.{other}"),
-                &value.brief(),
+                value,
                 "is given beside a fixed pressure, which does not depend on the gas",
                 "pressure alone, or a gas without it",
             ));
@@ -51,7 +51,7 @@ pub(super) fn read(
     if is_static(settings) {
         return Err(source.error(
             "gas",
-            &gas.brief(),
+            gas,
             "is not a fixed pressure, which solver.static needs",
             "{\"pressure\": \"1 kPa\"}",
         ));
@@ -79,7 +79,7 @@ fn initial_temperature(
     if isothermal && initial_temperature.to_bits() != film_temperature.to_bits() {
         return Err(source.error(
             "gas.initial_temperature",
-            &shown(initial_temperature),
+            shown(initial_temperature),
             "is not the film temperature, which isothermal gas always has",
             format!("{} K, or another heat_transfer", shown(film_temperature)),
         ));
@@ -98,7 +98,7 @@ fn initial_mass(
     match (settings.number("gas.initial_mass"), settings.number("gas.initial_pressure")) {
         (Some(_), Some(pressure)) => Err(source.error(
             "gas.initial_pressure",
-            &shown(pressure),
+            shown(pressure),
             "is given beside initial_mass",
             "one of initial_mass, initial_pressure",
         )),
@@ -188,7 +188,7 @@ fn check_outward(shape: &Shape, source: &Source) -> Result<f64, InputError> {
         return Err(source
             .error(
                 "mesh.positions",
-                &Json::Text(shape.file.clone()).brief(),
+                Json::Text(shape.file.clone()),
                 "encloses no volume: its layers touch each other",
                 "film that encloses a volume where there is gas",
             )
@@ -200,7 +200,7 @@ fn check_outward(shape: &Shape, source: &Source) -> Result<f64, InputError> {
     Err(source
         .error(
             "mesh.positions",
-            &Json::Text(shape.file.clone()).brief(),
+            Json::Text(shape.file.clone()),
             format!("encloses {} m³: its faces are wound inward", shown(volume)),
             "faces counter-clockwise seen from outside",
         )
@@ -230,7 +230,7 @@ fn close(
                 let vertex = |node| shape.numbering.vertex(node).map_or(0, |vertex| vertex + 1);
                 return Err(source.error(
                     "mesh.positions",
-                    &Json::Text(shape.file.clone()).brief(),
+                    Json::Text(shape.file.clone()),
                     format!(
                         "leaks: its free edges pass through {:?} m twice, at OBJ vertices {} and {} \
                          (counted from 1), which are not joined",

@@ -1,16 +1,17 @@
 //! Refuses a scene for which this process has no memory, before the memory is used.
 
-use billow_solver::geometry::mesh_io::obj_size::ObjSize;
+use billow_solver::geometry::mesh_io::obj_reader::Surface;
 use billow_solver::scene::film_scene::FilmScene;
 
 use crate::input::source::Source;
 use crate::job::memory::{FilmSize, film, samples};
 use crate::platform::error::InputError;
-use crate::platform::memory::{Limit, limits, size, smallest};
+use crate::platform::memory::{limits, size, smallest};
 
-/// Memory of a vertex of an OBJ file, of a face and of an element, with the copies of their reading, bytes.
-const VERTEX: u64 = 110;
-const FACE: u64 = 130;
+/// Memory of the vertices and faces that a byte of an OBJ file describes, at most, with the copies of their
+/// reading, bytes: the shortest line of a face has 8 bytes, and its face takes 130.
+const OBJ_BYTE: u64 = 17;
+/// Memory of an element of a surface, bytes.
 const ELEMENT: u64 = 110;
 
 /// What decides the memory of a scene, beside its mesh.
@@ -41,30 +42,34 @@ impl Needs {
         source: &Source,
     ) -> Result<(), InputError> {
         let needed = self.film(elements, stack).saturating_add(ELEMENT.saturating_mul(elements));
-        let mesh = || format!("makes a capsule of {elements} elements");
-        check(needed, "design.subdivisions", &subdivisions.to_string(), mesh, source)
+        let mesh = format!("makes a capsule of {elements} elements");
+        check(needed, "design.subdivisions", &subdivisions.to_string(), &mesh, source)
     }
 
-    /// Refuses an OBJ file of this size.
-    pub fn check_file(
+    /// Refuses the surface of an OBJ file.
+    pub fn check_surface(
         self,
-        file: &ObjSize,
+        surface: &Surface,
         key: &str,
         name: &str,
         source: &Source,
     ) -> Result<(), InputError> {
-        let parts = [
-            file.bytes,
-            file.vertices.saturating_mul(VERTEX),
-            file.faces.saturating_mul(FACE),
-            file.elements.saturating_mul(ELEMENT),
-            if file.elements > 0 { self.film(file.elements, None) } else { 0 },
-        ];
-        let needed = parts.into_iter().fold(0, u64::saturating_add);
-        let ObjSize { lines, vertices, elements, .. } = *file;
-        let mesh = || format!("has {lines} lines, {vertices} vertices, {elements} elements");
-        check(needed, key, &format!("{name:?}"), mesh, source)
+        let elements = surface.faces.iter().map(|face| face.fan().count() as u64).sum::<u64>();
+        let film = if elements > 0 { self.film(elements, None) } else { 0 };
+        let needed = film.saturating_add(ELEMENT.saturating_mul(elements));
+        check(needed, key, &format!("{name:?}"), &format!("has {elements} elements"), source)
     }
+}
+
+/// Refuses an OBJ file of this size, bytes.
+pub(super) fn check_file(
+    bytes: usize,
+    key: &str,
+    name: &str,
+    source: &Source,
+) -> Result<(), InputError> {
+    let needed = OBJ_BYTE.saturating_mul(bytes as u64);
+    check(needed, key, &format!("{name:?}"), &format!("has {}", size(bytes as u64)), source)
 }
 
 /// Refuses a scene whose history and frames do not fit.
@@ -86,7 +91,7 @@ pub(super) fn check_outputs(film_scene: &FilmScene, source: &Source) -> Result<(
     } else {
         ("outputs.frames", format!("gives {} frames", outputs.frames))
     };
-    check(estimate.total, key, "", || problem, source)
+    check(estimate.total, key, "", &problem, source)
 }
 
 /// Refuses what needs more than this process may use, bytes.
@@ -94,29 +99,14 @@ fn check(
     needed: u64,
     key: &str,
     value: &str,
-    problem: impl FnOnce() -> String,
-    source: &Source,
-) -> Result<(), InputError> {
-    match smallest(&limits(), 1) {
-        Some(limit) if needed > limit.usable_alone() => {
-            Err(refused(needed, &limit, key, value, &problem(), source))
-        }
-        _ => Ok(()),
-    }
-}
-
-fn refused(
-    needed: u64,
-    limit: &Limit,
-    key: &str,
-    value: &str,
     problem: &str,
     source: &Source,
-) -> InputError {
+) -> Result<(), InputError> {
+    let limit = smallest(&limits(), 1).filter(|limit| needed > limit.usable_alone());
+    let Some(limit) = limit else { return Ok(()) };
     let usable = size(limit.usable_alone());
     let problem = format!("{problem}: about {} of memory needed", size(needed));
     let allowed = format!("up to {usable}, what the program leaves of {limit}");
-    let mut error = source.error(key, value, problem, allowed);
-    "use a coarser mesh, or a machine or limit with more memory".clone_into(&mut error.hint);
-    error
+    let next = "use a coarser mesh, or a machine or limit with more memory";
+    Err(source.error(key, value, problem, allowed).with_hint(next))
 }

@@ -2,7 +2,7 @@
 //! coincide are joined only with `weld`; the user's numbers are kept.
 
 use billow_solver::geometry::field::Field;
-use billow_solver::geometry::mesh_io::obj_reader::{self, Face, Surface};
+use billow_solver::geometry::mesh_io::obj_reader::{Face, Surface};
 use billow_solver::geometry::shell::{Shell, ShellError};
 use billow_solver::mechanics::closure::ClosureNodes;
 use billow_solver::mechanics::supports::Supports;
@@ -17,7 +17,7 @@ use crate::input::json::Json;
 use crate::input::keys::MESH_KEYS;
 use crate::input::object::Object;
 use crate::input::source::Source;
-use crate::platform::error::{Error, InputError, Result};
+use crate::platform::error::{InputError, Result};
 
 /// Reads `mesh`.
 pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
@@ -26,7 +26,7 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
         Object::new(json, "mesh", "a mesh", MESH_KEYS, &["reference", "closure"], &source)?;
     let file = object.needed_text("positions")?;
     let scale = object.needed("scale")?;
-    let mut surface = surface(reader, "mesh.positions", &file, 0)?;
+    let mut surface = reader.surface("mesh.positions", &file, 0)?;
     for vertex in &mut surface.vertices {
         *vertex *= scale;
     }
@@ -110,7 +110,7 @@ fn closing_file(
         Some(Json::Text(name)) if is_file(name) => name,
         _ => return Ok(None),
     };
-    let other = self::surface(reader, "mesh.closure", name, surface.vertices.len())?;
+    let other = reader.surface("mesh.closure", name, surface.vertices.len())?;
     if !other.vertices.is_empty() && other.vertices.len() != surface.vertices.len() {
         let problem = format!(
             "has {} vertices, {file} has {}: its faces must use the same vertices",
@@ -136,15 +136,7 @@ fn refuse(
     allowed: impl Into<String>,
     source: &Source,
 ) -> InputError {
-    source.error(key, &Json::Text(file.to_owned()).brief(), problem, allowed)
-}
-
-fn surface(reader: &mut Reader, key: &str, name: &str, given: usize) -> Result<Surface> {
-    let text = reader.text(key, name)?;
-    obj_reader::read(&text, given).map_err(|error| {
-        let problem = format!("line {}: {}", error.line, error.problem);
-        Error::Input(refuse(name, key, problem, error.allowed, &reader.source))
-    })
+    source.error(key, Json::Text(file.to_owned()), problem, allowed)
 }
 
 /// For each list of names of the surface, whether its faces close the volume without being film.

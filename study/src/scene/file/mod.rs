@@ -302,7 +302,7 @@ fn gravity(json: Option<&Json>, source: &Source) -> Checked<Vector3<f64>> {
     let [along, vector] = &GRAVITY;
     let Some(json) = json else { return Ok(Vector3::zeros()) };
     let refused =
-        |refusal: Refusal| source.error("gravity", &json.brief(), refusal.problem, refusal.allowed);
+        |refusal: Refusal| source.error("gravity", json, refusal.problem, refusal.allowed);
     if matches!(json, Json::List(_)) {
         return Ok(vector.read_vector(json).map_err(refused)?.into());
     }

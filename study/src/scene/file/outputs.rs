@@ -96,8 +96,8 @@ impl Recording {
         let refuse = |problem: String| object.error(self.key, problem, self.allowed);
         let members = |json: &Json| match json {
             Json::Object(members) => Ok(members.clone()),
-            Json::List(_) => Err(refuse(format!("the position {} has no name", json.brief()))),
-            number => Ok(vec![(number.brief(), number.clone())]),
+            Json::List(_) => Err(refuse(format!("the position {json} has no name"))),
+            number => Ok(vec![(number.to_string(), number.clone())]),
         };
         let named = match object.given(self.key) {
             None => return Ok(()),

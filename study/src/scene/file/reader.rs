@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
-use billow_solver::geometry::mesh_io::obj_size::ObjSize;
+use billow_solver::geometry::mesh_io::obj_reader::{self, Surface};
 
-use super::memory::Needs;
+use super::memory::{Needs, check_file};
 use crate::input::source::Source;
 use crate::platform::error::{Error, Result};
 use crate::platform::files;
@@ -31,17 +31,23 @@ pub(crate) struct Reader {
 }
 
 impl Reader {
+    /// The surface of an OBJ file that a key names; `given` is the number of vertices that its faces may use
+    /// before its own.
+    pub fn surface(&mut self, key: &str, name: &str, given: usize) -> Result<Surface> {
+        let text = self.text(key, name)?;
+        let surface = obj_reader::read(&text, given).map_err(|error| {
+            let problem = format!("line {}: {}", error.line, error.problem);
+            self.source.error(key, format!("{name:?}"), problem, error.allowed)
+        })?;
+        self.needs.check_surface(&surface, key, name, &self.source)?;
+        Ok(surface)
+    }
+
     /// The text of a file that a key names.
-    pub fn text(&mut self, key: &str, name: &str) -> Result<String> {
+    fn text(&mut self, key: &str, name: &str) -> Result<String> {
         let path = self.folder.join(name);
         let disk = |problem: String| Error::Disk { path: path.clone(), problem };
-        let mut size = ObjSize::default();
-        let scanned = files::scan_at_most(&path, MAX_MESH_SIZE, &mut |part| size.add(part));
-        if matches!(scanned, Ok(true)) {
-            self.needs.check_file(&size.finish(), key, name, &self.source)?;
-        }
-        let bytes = scanned
-            .and_then(|_| files::read_at_most(&path, MAX_MESH_SIZE))
+        let bytes = files::read_at_most(&path, MAX_MESH_SIZE)
             .map_err(|error| {
                 let near =
                     files::nearest_name(&path).filter(|_| error.kind() == ErrorKind::NotFound);
@@ -52,6 +58,7 @@ impl Reader {
                 let limit = MAX_MESH_SIZE >> 20;
                 disk(format!("is larger than {limit} MiB\n  next: give a coarser mesh"))
             })?;
+        check_file(bytes.len(), key, name, &self.source)?;
         self.hashes.insert(name.to_owned(), bytes_hash(&bytes));
         String::from_utf8(bytes).map_err(|error| {
             let byte = error.utf8_error().valid_up_to();

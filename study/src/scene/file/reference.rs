@@ -1,6 +1,6 @@
 //! `mesh.reference`: the stress-free shape of each triangle.
 
-use billow_solver::geometry::mesh_io::obj_reader::{self, Face, Surface};
+use billow_solver::geometry::mesh_io::obj_reader::{Face, Surface};
 use billow_solver::geometry::shell::flat;
 use nalgebra::{Vector2, Vector3};
 
@@ -8,7 +8,7 @@ use super::reader::Reader;
 use crate::input::json::Json;
 use crate::input::keys::{FLAT, KeyKind};
 use crate::input::object::Object;
-use crate::platform::error::{Error, Result};
+use crate::platform::error::Result;
 
 /// Stress-free corners of each triangle of each face, m.
 pub(super) type Reference = Vec<Vec<[Vector3<f64>; 3]>>;
@@ -31,7 +31,7 @@ pub(super) fn reference(
     let given: Vec<(Vec<Vector3<f64>>, String)> = match object.given("reference") {
         None => return Ok(surface.faces.iter().map(|face| fans(face, &start(face))).collect()),
         Some(Json::Text(name)) => {
-            let flat = file(name, object, reader)?;
+            let flat = reader.surface("mesh.reference", name, 0)?;
             let position = |v: &u32| flat.vertices[*v as usize] * scale;
             let corners = |face: &Face| face.corners.iter().map(position).collect();
             flat.faces.iter().map(|face| (corners(face), format!("line {}", face.line))).collect()
@@ -101,7 +101,7 @@ fn inline(json: &Json) -> std::result::Result<Vec<Vector3<f64>>, String> {
             }
             Ok(position)
         }
-        other => Err(format!("a corner is {}, not [x, y]", other.brief())),
+        other => Err(format!("a corner is {other}, not [x, y]")),
     };
     corners.iter().map(corner).collect()
 }
@@ -126,13 +126,4 @@ pub(super) fn flattened(
     Err(object
         .error(key, problem, "faces with an area, also after a polygon is cut into a fan")
         .into())
-}
-
-/// The surface of an OBJ file with stress-free corners.
-fn file(name: &str, object: &Object<'_>, reader: &mut Reader) -> Result<Surface> {
-    let text = reader.text("mesh.reference", name)?;
-    obj_reader::read(&text, 0).map_err(|error| {
-        let problem = format!("line {}: {}", error.line, error.problem);
-        Error::Input(object.error("reference", problem, error.allowed))
-    })
 }

@@ -42,8 +42,8 @@ impl Plane {
     }
 }
 
-/// The nodes of a support, in ascending order. `on` is the word it is on, a ring or cap with its
-/// `which`; `plane` is its plane where it is on one.
+/// The nodes of a support, in ascending order. `on` is the word it is on; `plane` is its plane where it is on
+/// one.
 pub(super) fn nodes(
     object: &Object<'_>,
     on: &str,
@@ -152,7 +152,7 @@ fn number(json: &Json) -> Result<i64, String> {
         Json::Number(number) => whole(*number),
         _ => None,
     };
-    number.ok_or_else(|| format!("{} is not a whole number", json.brief()))
+    number.ok_or_else(|| format!("{json} is not a whole number"))
 }
 
 /// Nodes on edges with film on one side only.

@@ -1,6 +1,5 @@
 //! `start`: velocities.
 
-use billow_solver::geometry::mesh_io::obj_reader;
 use nalgebra::Vector3;
 
 use super::reader::Reader;
@@ -61,11 +60,7 @@ fn add_file(
     shape: &Shape,
     reader: &mut Reader,
 ) -> Result<()> {
-    let text = reader.text("start.velocities", name)?;
-    let file = obj_reader::read(&text, 0).map_err(|error| {
-        let problem = format!("line {}: {}", error.line, error.problem);
-        object.error("velocities", problem, error.allowed)
-    })?;
+    let file = reader.surface("start.velocities", name, 0)?;
     let vertices = shape.numbering.node.len();
     if file.vertices.len() != vertices {
         let problem = format!("has {} vertices; the mesh has {vertices}", file.vertices.len());

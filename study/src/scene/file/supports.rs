@@ -93,12 +93,6 @@ fn support(
     source: &Source,
 ) -> Result<FilmSupport, InputError> {
     let on = object.needed_text("on")?;
-    let which = "which";
-    let on = match (on.as_str(), object.text(which)?) {
-        ("ring" | "cap", None) => return Err(object.missing(which)),
-        ("ring" | "cap", Some(which)) => format!("{which}_{on}"),
-        _ => on,
-    };
     refuse_keys_of_others(object, &on)?;
     let plane = if on == "plane" { Some(Plane::read(object, shape)?) } else { None };
     let nodes = selection::nodes(object, &on, plane, shape)?;

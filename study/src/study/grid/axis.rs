@@ -56,7 +56,7 @@ impl Grid {
             {
                 let problem =
                     format!("has {} values, the first list {}", values.len(), first.len());
-                return Err(context.source.error(&path, &value.brief(), problem, allowed));
+                return Err(context.source.error(&path, value, problem, allowed));
             }
             columns.push(column);
             lists.push(values);
@@ -82,7 +82,7 @@ impl Grid {
         let Context { source, limits, .. } = context;
         if self.search.is_some() {
             let allowed = "one search in a study; the other axes as lists";
-            return Err(source.error(path, &json.brief(), "is a second search", allowed));
+            return Err(source.error(path, json, "is a second search", allowed));
         }
         let key = self.columns[column].key;
         let search = Search::read(json, path, (column, key), limits, source)?;
@@ -121,7 +121,7 @@ impl Grid {
         let column = column::find(name, path, value, settings, section, source)?;
         if self.columns.contains(&column) {
             let problem = format!("varies {}, which another axis varies already", column.name);
-            return Err(source.error(path, &value.brief(), problem, "each key once"));
+            return Err(source.error(path, value, problem, "each key once"));
         }
         self.columns.push(column);
         Ok(self.columns.len() - 1)
@@ -142,22 +142,13 @@ impl Grid {
             Json::Object(_) => {
                 if is_search(json) {
                     let problem = "is a search, which cannot vary together with another key";
-                    return Err(source.error(
-                        path,
-                        &json.brief(),
-                        problem,
-                        "an axis of its key alone",
-                    ));
+                    return Err(source.error(path, json, problem, "an axis of its key alone"));
                 }
                 return range::values(column.key, json, path, source, max_points);
             }
             other => {
-                let mut error = source.error(
-                    path,
-                    &other.brief(),
-                    format!("is {}, not an axis", other.kind()),
-                    AXIS,
-                );
+                let mut error =
+                    source.error(path, other, format!("is {}, not an axis", other.kind()), AXIS);
                 if let Some(key) = KEYS.get(column.index) {
                     error.hint = format!("a single value belongs to {}", key.path);
                 }

@@ -34,16 +34,11 @@ impl Grid {
                 });
                 if self.is_replicate(column) {
                     let problem = "is a replicate, of which every point has all values";
-                    return Err(source.error(
-                        &path,
-                        &json.brief(),
-                        problem,
-                        "keys that are not replicates",
-                    ));
+                    return Err(source.error(&path, json, problem, "keys that are not replicates"));
                 }
                 if values.iter().any(|(other, _)| *other == column) {
                     let problem = "gives this key twice";
-                    return Err(source.error(&path, &json.brief(), problem, "each key once"));
+                    return Err(source.error(&path, json, problem, "each key once"));
                 }
                 values.push((column, value));
             }
@@ -62,7 +57,7 @@ impl Grid {
         let Json::Text(text) = json else {
             let problem = format!("is {}, not a text", json.kind());
             let allowed = "a condition, as in \"N == 6 and feasible\"";
-            return Err(source.error("grid.filter", &json.brief(), problem, allowed));
+            return Err(source.error("grid.filter", json, problem, allowed));
         };
         let filter = Filter::read(text, &self.columns, settings);
         let filter = filter.map_err(|error| {
@@ -74,7 +69,7 @@ impl Grid {
             let problem =
                 format!("names {replicate}, a replicate, of which a search needs all values");
             let allowed = "a condition on the other keys";
-            return Err(source.error("grid.filter", &json.brief(), problem, allowed));
+            return Err(source.error("grid.filter", json, problem, allowed));
         }
         self.filter = Some(filter);
         Ok(())

@@ -41,8 +41,7 @@ impl Search {
     ) -> Result<Self, InputError> {
         let object =
             Object::new(json, path, "a search", SEARCH_KEYS, &[BISECT, "tolerance"], source)?;
-        let refuse =
-            |problem: &str, allowed: &str| Err(source.error(path, &json.brief(), problem, allowed));
+        let refuse = |problem: &str, allowed: &str| Err(source.error(path, json, problem, allowed));
         let integer = match key.kind {
             KeyKind::Integer(..) => true,
             KeyKind::Quantity(_) => false,
