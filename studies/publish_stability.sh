@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # Runs studies/stability.json (a quarter of an hour on two cores; finished cells are not run again) and writes the maps, borders
-# and pictures of where methods fail to RESULTS/published: maps.txt, cells.csv, overview.png, one SVG a map, and the strips of
-# the page.
+# and pictures of where methods fail to RESULTS/published: maps.txt, cells.csv, overview.png and one SVG a map.
 #
 # usage: studies/publish_stability.sh [CHECKS [RESULTS]]
 set -euo pipefail
@@ -18,18 +17,10 @@ code=0
 # A run that was stopped draws nothing, and what is published stays.
 [ -d "$results/charts" ] || exit "$code"
 sed "\\|$results/charts/|d" "$results/maps.txt" > "$out/maps.txt"
-"$checks" stability "$results" --format csv --no-pictures -q > "$out/cells.csv" 2> /dev/null || true
+"$checks" stability studies/stability.json --results "$results" --format csv --no-pictures -q > "$out/cells.csv" 2> /dev/null || true
 
 rm -f "$out"/*.svg "$out"/*.png
-for picture in "$results"/charts/*.svg; do
-  case $picture in
-    *_strip.svg) ;;
-    *) cp "$picture" "$out" ;;
-  esac
-done
-# Pictures of the page: SVG has a tenth of the size of PNG.
-for picture in overview.png step_strip.svg step_bag_strip.svg residual_gas_strip.svg stowed_height_strip.svg; do
-  if [ -f "$results/charts/$picture" ]; then cp "$results/charts/$picture" "$out"; fi
-done
+# SVG has a tenth of the size of PNG.
+cp "$results"/charts/*.svg "$results"/charts/overview.png "$out"
 echo "written to $out: $(find "$out" -type f | wc -l) files, $(du -sk "$out" | cut -f 1) KiB; exit code of the maps: $code"
 exit "$code"

@@ -8,13 +8,12 @@ use billow_study::cli::print::{count, print_rows};
 use billow_study::cli::{Format, instruction_set, output_error};
 use billow_study::input::value::{Value, brief_number};
 use billow_study::platform::error::{Error, Result};
-use billow_study::platform::files::{self, Disk, Files, disk_error};
+use billow_study::platform::files::{Disk, Files, disk_error};
 use billow_study::platform::stop::Stop;
 
 use super::file::{self, Map};
-use super::map::{Border, Placed, Running, borders, placed};
-use super::picture::{border_text, map as map_picture, overview, strip};
-use super::stored::{self, Cells, MAP_FILE};
+use super::map::{Border, Cells, FinishedMap, Placed};
+use super::picture;
 use crate::cases::Rig;
 use crate::output::{chosen, draw};
 
@@ -36,10 +35,9 @@ const COLUMNS: [&str; 11] = [
 /// Arguments of `billow-checks stability`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A map file, as studies/stability.json: runs the cells that are missing. Or the folder of its results: runs
-    /// nothing.
+    /// A map file, as studies/stability.json. Runs the cells that are missing in the results.
     #[arg(value_name = "MAPS")]
-    target: PathBuf,
+    maps_file: PathBuf,
     /// Folder of the results [default: `results/MAPS` under the current folder].
     #[arg(long, value_name = "DIR")]
     results: Option<PathBuf>,
@@ -64,81 +62,50 @@ pub struct Args {
 /// A map file that is invalid; a signal; a cell that is not as expected, or a border that is not that of theory; a file
 /// that cannot be written.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let only_read = args.target.is_dir();
-    let path = if only_read { args.target.join(MAP_FILE) } else { args.target.clone() };
-    let (bytes, all) = file::read(&path)?;
-    let maps = chosen("--maps", &args.maps, &all, |map| &map.name)?;
-    let folder = if only_read {
-        args.target.clone()
-    } else {
-        let usual = || Path::new("results").join(args.target.file_stem().unwrap_or_default());
-        args.results.clone().unwrap_or_else(usual)
-    };
-    let (mut cells, damaged) = stored::read(&folder);
-    if damaged && !args.quiet.quiet {
-        let folder = folder.display();
-        eprintln!("billow-checks: the stored cells of {folder} are of another version or damaged");
-    }
-    let rig = Rig { instruction_set: instruction_set::selected()?, ..Rig::default() };
-    if !only_read {
-        Disk.create_folder(&folder).map_err(|error| disk_error(&folder, &error))?;
-        let copy = folder.join(MAP_FILE);
-        files::write_if_changed(&Disk, &copy, &bytes).map_err(|error| disk_error(&copy, &error))?;
-        cells = run_missing(args, &maps, rig, &folder, cells)?;
-    }
-    report(args, &maps, &cells, rig, &folder, out)
-}
-
-/// Runs what is missing. Returns all finished cells.
-fn run_missing(args: &Args, maps: &[&Map], rig: Rig, folder: &Path, cells: Cells) -> Result<Cells> {
-    let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
-    let running = Running::new(rig, folder, &stop, cells);
-    let pool = args.threads.pool()?;
-    for map in maps {
-        let before = running.cells().len();
-        pool.install(|| running.run(map))?;
+    let note = |text: &str| {
         if !args.quiet.quiet {
-            let ran = running.cells().len() - before;
-            eprintln!("billow-checks: map {}: {} run", map.name, count(ran, "cell"));
+            eprintln!("billow-checks: {text}");
         }
+    };
+    let all = file::read(&args.maps_file)?;
+    let maps = chosen("--maps", &args.maps, &all, |map| &map.name)?;
+    let usual = || Path::new("results").join(args.maps_file.file_stem().unwrap_or_default());
+    let folder = args.results.clone().unwrap_or_else(usual);
+    Disk.create_folder(&folder).map_err(|error| disk_error(&folder, &error))?;
+    let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
+    let rig = Rig { instruction_set: instruction_set::selected()?, ..Rig::default() };
+    let (cells, damaged) = Cells::open(rig, folder.join("cells.json"), &stop);
+    if damaged {
+        let folder = folder.display();
+        note(&format!("the stored cells of {folder} are of another version or damaged"));
     }
-    Ok(running.cells())
+    let pool = args.threads.pool()?;
+    let mut finished = Vec::new();
+    for map in maps {
+        let before = cells.len();
+        finished.push(pool.install(|| cells.run(map))?);
+        note(&format!("map {}: {} run", map.name, count(cells.len() - before, "cell")));
+    }
+    report(args, &finished, &folder, out)
 }
 
 /// Prints cells and borders, draws the pictures, and reports what is not as expected.
-fn report(
-    args: &Args,
-    maps: &[&Map],
-    cells: &Cells,
-    rig: Rig,
-    folder: &Path,
-    out: &mut dyn Write,
-) -> Result<()> {
+fn report(args: &Args, maps: &[FinishedMap<'_>], folder: &Path, out: &mut dyn Write) -> Result<()> {
     let format = args.output.format();
     let (mut rows, mut lines, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut pictures, mut all) = (Vec::new(), Vec::new());
-    for map in maps.iter().copied() {
-        let (found, borders) = (placed(map, cells), borders(map, cells));
-        rows.extend(found.iter().map(|placed| row(map, placed)));
-        lines.extend(summary(map, &found));
-        for border in &borders {
-            let text = border_text(map, border).unwrap_or_else(|| no_border(map, border));
-            if border.wrong {
+    for finished in maps {
+        let map = finished.map;
+        rows.extend(finished.cells.iter().map(|placed| row(map, placed)));
+        lines.extend(summary(finished));
+        for border in &finished.borders {
+            let text = border_text(map, border);
+            if border.is_wrong {
                 wrong.push(format!("{}: {text}: not the limit of theory", map.name));
             }
             lines.push(format!("  {text}"));
         }
-        let unexpected_cells = found.iter().filter(|placed| placed.is_wrong());
+        let unexpected_cells = finished.cells.iter().filter(|placed| placed.is_wrong());
         wrong.extend(unexpected_cells.map(|placed| unexpected(map, placed)));
-        if !args.no_pictures {
-            pictures.push((map.name.clone(), map_picture(map, &found, &borders)));
-            let strip = strip(&rig, map, &found);
-            pictures.extend(strip.map(|svg| (format!("{}_strip", map.name), svg)));
-        }
-        all.push((map, found));
-    }
-    if !args.no_pictures && all.len() > 1 {
-        pictures.push(("overview".to_owned(), overview(&all)));
     }
     if format == Format::Table {
         for line in &lines {
@@ -147,7 +114,13 @@ fn report(
     } else {
         print_rows(&COLUMNS, &rows, format, out)?;
     }
-    if !pictures.is_empty() {
+    if !args.no_pictures {
+        let of_map =
+            |finished: &FinishedMap<'_>| (finished.map.name.clone(), picture::of_map(finished));
+        let mut pictures: Vec<(String, String)> = maps.iter().map(of_map).collect();
+        if maps.len() > 1 {
+            pictures.push(("overview".to_owned(), picture::overview(maps)));
+        }
         draw(folder, pictures, format == Format::Table, out)?;
     }
     match wrong.as_slice() {
@@ -160,30 +133,37 @@ fn report(
     }
 }
 
-fn no_border(map: &Map, border: &Border) -> String {
+/// A border in words.
+fn border_text(map: &Map, border: &Border) -> String {
     let axis = map.horizontal();
-    let other = map.axes.get(1 - axis).map(|axis| axis.parameter.name);
-    let at = other.zip(border.at);
-    let at = at.map_or(String::new(), |(name, at)| format!(", {name} {}", brief_number(at)));
-    let along = map.axes[axis].parameter.name;
-    format!("border {}{at}: none along {along}", border.method.name())
+    let (along, method) = (&map.axes[axis].0, border.method.name());
+    let at = border
+        .at
+        .map_or(String::new(), |at| format!(", {} {}", map.axes[1 - axis].0, brief_number(at)));
+    let Some(value) = border.value else {
+        return format!("border {method}{at}: none along {along}");
+    };
+    let theory =
+        border.of_theory.map_or(String::new(), |ratio| format!(", {ratio:.4} of 2/omega_max"));
+    format!("border {method}{at}: {along} {} ({}){theory}", brief_number(value), border.status)
 }
 
 fn unexpected(map: &Map, placed: &Placed) -> String {
-    let (method, expected) = (placed.question.method.name(), placed.expected.join(" or "));
-    let (status, place) = placed.cell.as_ref().map_or(("", ""), |cell| (&cell.status, &cell.place));
+    let (method, expected) = (placed.method.name(), placed.expected.join(" or "));
+    let (status, place) = (&placed.cell.status, &placed.cell.place);
     let place = if place.is_empty() { String::new() } else { format!(" ({place})") };
     let at = map.at(&placed.at).join(", ");
     format!("{}: {method}, {at}: {status}{place}, expected {expected}", map.name)
 }
 
 /// The numbers of cells by status, of each method.
-fn summary(map: &Map, found: &[Placed]) -> Vec<String> {
-    let mut lines = vec![format!("{}: {}", map.name, count(found.len(), "cell"))];
-    for (method, cells) in map.methods.iter().zip(found.chunks(map.places().len())) {
+fn summary(finished: &FinishedMap<'_>) -> Vec<String> {
+    let map = finished.map;
+    let mut lines = vec![format!("{}: {}", map.name, count(finished.cells.len(), "cell"))];
+    for (method, cells) in map.methods.iter().zip(finished.cells.chunks(map.places().len())) {
         let mut numbers: Vec<(&str, usize)> = Vec::new();
         for placed in cells {
-            let status = placed.cell.as_ref().map_or("not run", |cell| cell.status.as_str());
+            let status = placed.cell.status.as_str();
             match numbers.iter_mut().find(|(known, _)| *known == status) {
                 Some((_, number)) => *number += 1,
                 None => numbers.push((status, 1)),
@@ -198,24 +178,19 @@ fn summary(map: &Map, found: &[Placed]) -> Vec<String> {
 
 fn row(map: &Map, placed: &Placed) -> Vec<Value> {
     let mut at = map.at(&placed.at).into_iter();
-    let mut row: Vec<Value> = vec![
+    let cell = &placed.cell;
+    let audit = (!cell.audit.is_empty()).then_some(cell.audit.as_str());
+    vec![
         map.name.as_str().into(),
-        placed.question.method.name().into(),
+        placed.method.name().into(),
         at.next().into(),
         at.next().into(),
-    ];
-    let cell = placed.cell.as_ref();
-    row.push(cell.map_or("not run", |cell| &cell.status).into());
-    row.push(placed.expected.join(" or ").into());
-    if let Some(cell) = cell {
-        let audit = (!cell.audit.is_empty()).then_some(cell.audit.as_str());
-        row.extend([
-            if placed.is_wrong() { "no" } else { "yes" }.into(),
-            cell.time.into(),
-            audit.into(),
-            cell.residual.into(),
-            cell.steps.into(),
-        ]);
-    }
-    row
+        cell.status.as_str().into(),
+        placed.expected.join(" or ").into(),
+        if placed.is_wrong() { "no" } else { "yes" }.into(),
+        cell.time.into(),
+        audit.into(),
+        cell.residual.into(),
+        cell.steps.into(),
+    ]
 }

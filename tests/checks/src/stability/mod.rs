@@ -7,24 +7,23 @@
 //! ```
 //!
 //! A method is an integrator of film (each of [`IntegratorKind::ALL`]), a model without film, or the search for a static
-//! equilibrium. A map file
-//! ([`mod@file`]) names scenes, axes and what is expected of each cell. The runs go to the solver directly: a step
-//! beyond the stable one is outside the range of `solver.cfl`, and the map must show what it does.
+//! equilibrium. A map file ([`mod@file`]) names scenes, axes and what is expected of each cell. The runs go to the
+//! solver directly: a step beyond the stable one is outside the range of `solver.cfl`, and the map must show what it
+//! does.
 
 use billow_solver::integrators;
 use billow_solver::scene::IntegratorKind;
 
-pub mod cell;
+mod cell;
 pub mod command;
-pub mod file;
-pub mod map;
-pub mod picture;
-pub mod scenes;
-pub mod stored;
+mod file;
+mod map;
+mod picture;
+mod scenes;
 
 /// How a scene is integrated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Method {
+enum Method {
     /// Film with this integrator.
     Film(IntegratorKind),
     /// The model piston.
@@ -37,13 +36,13 @@ pub enum Method {
 
 impl Method {
     /// Every method: all integrators, then the models without film, then statics.
-    pub fn all() -> Vec<Self> {
+    fn all() -> impl Iterator<Item = Self> {
         let film = IntegratorKind::ALL.map(Self::Film);
-        film.into_iter().chain([Self::Piston, Self::Storeys, Self::Statics]).collect()
+        film.into_iter().chain([Self::Piston, Self::Storeys, Self::Statics])
     }
 
     /// Name, as in a map file.
-    pub fn name(self) -> &'static str {
+    fn name(self) -> &'static str {
         match self {
             Self::Film(kind) => integrators::entry(kind).name,
             Self::Piston => "piston",
@@ -51,9 +50,9 @@ impl Method {
             Self::Statics => "statics",
         }
     }
+}
 
-    /// The method of that name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::all().into_iter().find(|method| method.name() == name)
-    }
+/// The names of methods in a row.
+fn names(methods: &[Method]) -> String {
+    methods.iter().map(|method| method.name()).collect::<Vec<_>>().join(", ")
 }

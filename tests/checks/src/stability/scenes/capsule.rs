@@ -7,10 +7,10 @@ use billow_solver::scene::monitor_settings::MonitorSettings;
 use billow_solver::scene::paper::{self, window};
 use billow_solver::scene::{ModelKind, Scene, Stepping};
 
-use super::film::{Parts, prepared};
+use super::film::prepared;
 use super::{
-    CONTACT_STIFFNESS, MODULUS, Parameter, Prepared, Runs, STEP, StabilityScene, THICKNESS, Values,
-    compression, real, whole,
+    Build, CONTACT_STIFFNESS, MODULUS, Parameter, Prepared, STEP, StabilityScene, THICKNESS,
+    Values, compression, real, whole,
 };
 use crate::cases::Rig;
 use crate::stability::Method;
@@ -26,7 +26,7 @@ const MODEL_STEPS: u64 = 2_000_000;
 const DAMPING: Parameter = Parameter { default: paper::NUMERICAL_DAMPING, ..super::DAMPING };
 
 /// The capsule.
-pub const SCENE: StabilityScene = StabilityScene {
+pub(super) const SCENE: StabilityScene = StabilityScene {
     name: "capsule",
     meaning: "the paper's stowed capsule with contact, 50 ms, every step monitored",
     parameters: &[
@@ -50,8 +50,7 @@ pub const SCENE: StabilityScene = StabilityScene {
         real("burst_mass", 1e-4, [0.0, 1.0], "kg", "mass of the burst"),
         real("fixed_step", 0.0, [0.0, 0.05], "s", "fixed step of the model piston; 0: adaptive"),
     ],
-    runs: Runs::FilmAndModels,
-    build,
+    build: Build::FilmAndModels(build),
 };
 
 /// The scene as data, without its method.
@@ -103,6 +102,6 @@ fn build(rig: &Rig, method: Method, values: &Values) -> Result<Prepared, String>
     let contact = FilmContact { monitor, ..FilmContact::of(&scene.contact) };
     let contact = capsule::resolved_contact(contact, &scene.design).map_err(text)?;
     let film = FilmScene { contact: Some(contact), ..film };
-    let (run, timeline) = prepared(rig, film, kind, values, Parts::of(Rings::of(&mesh, height)))?;
+    let (run, timeline) = prepared(rig, film, kind, values, &[], Some(Rings::of(&mesh, height)))?;
     Ok(Prepared::Film(Box::new(run), timeline, None))
 }

@@ -1,46 +1,50 @@
 //! The small scenes of the map, and the parameters that a map may vary in each.
 
 use billow_solver::geometry::field::Field;
-use billow_solver::mechanics::film_model::FilmModel;
-use billow_solver::mechanics::supports::Supports;
 use billow_solver::models::film::FilmRun;
 use billow_solver::scene::timeline::Timeline;
-use billow_solver::scene::{Film, Scene};
+use billow_solver::scene::{Film, IntegratorKind, Scene};
+use billow_solver::system::FilmSystem;
 
 use super::Method;
 use crate::cases::Rig;
 
-mod bag;
 mod capsule;
 mod film;
-mod films;
-mod sheet;
 mod vessel;
 
 /// Raised when a scene changes: cells of other versions run again.
-pub const VERSION: u32 = 2;
+pub(super) const VERSION: u32 = 2;
 
 /// A parameter of a scene.
-#[derive(Debug, Clone, Copy)]
-pub struct Parameter {
-    /// Name.
-    pub name: &'static str,
+pub(super) struct Parameter {
+    pub(super) name: &'static str,
     /// Value where a map gives none.
-    pub default: f64,
+    default: f64,
     /// Smallest and largest value.
-    pub range: [f64; 2],
+    range: [f64; 2],
     /// Whether only whole numbers are values.
-    pub whole: bool,
+    pub(super) whole: bool,
     /// Unit, or what a number without unit is.
-    pub unit: &'static str,
-    /// Meaning.
-    pub meaning: &'static str,
+    unit: &'static str,
+    pub(super) meaning: &'static str,
 }
 
 impl Parameter {
     /// Name and unit, for an axis.
-    pub fn label(&self) -> String {
+    pub(super) fn label(&self) -> String {
         format!("{} ({})", self.name, self.unit)
+    }
+
+    /// Whether it can have this value.
+    pub(super) fn allows(&self, value: f64) -> bool {
+        (self.range[0]..=self.range[1]).contains(&value) && !(self.whole && value.fract() != 0.0)
+    }
+
+    /// The values that it can have, in words.
+    pub(super) fn allowed(&self) -> String {
+        let whole = if self.whole { "whole number" } else { "number" };
+        format!("a {whole} from {} to {} ({})", self.range[0], self.range[1], self.unit)
     }
 }
 
@@ -82,27 +86,20 @@ const fn compression(default: f64) -> Parameter {
     real("compression", default, [0.0, 1.0], "ratio", "film.compression")
 }
 
-/// The modulus of one of two parts of film over that of the other one. Not above 1: the stiff part bounds the step.
-const fn soft(meaning: &'static str) -> Parameter {
-    real("soft", 1.0, [1e-9, 1.0], "ratio", meaning)
-}
-
 /// The values of the parameters of a scene, in the order of its list.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Values(pub Vec<(&'static str, f64)>);
+pub(super) struct Values(pub(super) Vec<(&'static str, f64)>);
 
 impl Values {
     /// The defaults of a scene.
-    pub fn of(scene: &StabilityScene) -> Self {
+    pub(super) fn of(scene: &StabilityScene) -> Self {
         Self(scene.parameters.iter().map(|parameter| (parameter.name, parameter.default)).collect())
     }
 
     /// The value of a parameter; NaN for one that the scene does not have.
-    pub fn get(&self, name: &str) -> f64 {
+    pub(super) fn get(&self, name: &str) -> f64 {
         self.find(name).unwrap_or(f64::NAN)
     }
 
-    /// The value of a parameter, if the scene has it.
     fn find(&self, name: &str) -> Option<f64> {
         self.0.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
     }
@@ -114,11 +111,9 @@ impl Values {
     }
 
     /// Sets a parameter that the scene has.
-    pub fn set(&mut self, name: &str, value: f64) {
-        for (known, old) in &mut self.0 {
-            if *known == name {
-                *old = value;
-            }
+    pub(super) fn set(&mut self, name: &str, value: f64) {
+        for (_, old) in self.0.iter_mut().filter(|(known, _)| *known == name) {
+            *old = value;
         }
     }
 
@@ -127,7 +122,7 @@ impl Values {
         Film {
             // A scene without motion has none.
             numerical_damping: self.find("damping").unwrap_or(0.0),
-            compression: self.get("compression"),
+            compression: self.find("compression").unwrap_or(Film::PAPER_ELASTIC.compression),
             thickness: self.get("thickness"),
             youngs_modulus: self.get("modulus"),
             ..Film::PAPER_ELASTIC
@@ -135,75 +130,67 @@ impl Values {
     }
 }
 
-/// The methods that can run a scene.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Runs {
-    /// Every integrator of film.
-    Film,
-    /// Every integrator of film, and the models without film.
-    FilmAndModels,
-    /// The search for a static equilibrium.
-    Statics,
-}
-
-/// Film whose static equilibrium is searched.
-pub struct Vessel {
-    /// The film.
-    pub model: FilmModel,
-    /// Its supports.
-    pub supports: Supports,
-    /// Positions at the start, m.
-    pub positions: Field,
-    /// Overpressure, Pa.
-    pub overpressure: f64,
-}
-
 /// A scene that is ready to run.
-pub enum Prepared {
+pub(super) enum Prepared {
     /// Film, its times, and ω of its fastest mode (rad/s) if it is linear.
     Film(Box<FilmRun>, Timeline, Option<f64>),
     /// A capsule for a model without film.
     Model(Box<Scene>),
-    /// Film for the static solver.
-    Statics(Box<Vessel>),
+    /// Film under an overpressure, and its positions at the start, m, for the static solver.
+    Statics(Box<FilmSystem>, Field),
+}
+
+/// Which methods can run a scene, and what prepares it for them.
+enum Build {
+    /// Every integrator of film.
+    Film(fn(&Rig, IntegratorKind, &Values) -> Result<Prepared, String>),
+    /// Every integrator of film, and the models without film.
+    FilmAndModels(fn(&Rig, Method, &Values) -> Result<Prepared, String>),
+    /// The search for a static equilibrium.
+    Statics(fn(&Rig, &Values) -> Result<Prepared, String>),
 }
 
 /// A scene of the map.
-pub struct StabilityScene {
-    /// Name.
-    pub name: &'static str,
+pub(super) struct StabilityScene {
+    pub(super) name: &'static str,
     /// What it is, one line.
-    pub meaning: &'static str,
-    /// Its parameters.
-    pub parameters: &'static [Parameter],
-    /// What can run it.
-    pub runs: Runs,
-    /// Prepares it.
-    pub build: fn(&Rig, Method, &Values) -> Result<Prepared, String>,
+    pub(super) meaning: &'static str,
+    pub(super) parameters: &'static [Parameter],
+    build: Build,
 }
 
 impl StabilityScene {
     /// The parameter of a name.
-    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
+    pub(super) fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|parameter| parameter.name == name)
     }
 
     /// The methods that can run it.
-    pub fn methods(&self) -> Vec<Method> {
-        let can = |method: &Method| match method {
-            Method::Film(_) => self.runs != Runs::Statics,
-            Method::Piston | Method::Storeys => self.runs == Runs::FilmAndModels,
-            Method::Statics => self.runs == Runs::Statics,
+    pub(super) fn methods(&self) -> Vec<Method> {
+        let can = |method: &Method| match self.build {
+            Build::Film(_) => matches!(method, Method::Film(_)),
+            Build::FilmAndModels(_) => *method != Method::Statics,
+            Build::Statics(_) => *method == Method::Statics,
         };
-        Method::all().into_iter().filter(can).collect()
+        Method::all().filter(can).collect()
+    }
+
+    /// The scene with a method and values.
+    pub(super) fn prepare(
+        &self,
+        rig: &Rig,
+        method: Method,
+        values: &Values,
+    ) -> Result<Prepared, String> {
+        match (&self.build, method) {
+            (Build::Film(build), Method::Film(kind)) => build(rig, kind, values),
+            (Build::FilmAndModels(build), _) => build(rig, method, values),
+            (Build::Statics(build), Method::Statics) => build(rig, values),
+            _ => Err(format!("{} cannot run the scene {}", method.name(), self.name)),
+        }
     }
 }
 
 /// Every scene.
-pub const SCENES: [&StabilityScene; 6] =
-    [&sheet::SCENE, &bag::SCENE, &films::SCENE, &capsule::SCENE, &vessel::BAG, &vessel::CAPSULE];
-
-/// The scene of a name.
-pub fn find(name: &str) -> Option<&'static StabilityScene> {
-    SCENES.into_iter().find(|scene| scene.name == name)
-}
+pub(super) const SCENES: [&StabilityScene; 6] =
+    [&film::SHEET, &film::BAG, &film::FILMS, &capsule::SCENE, &vessel::BAG, &vessel::CAPSULE];

@@ -1,28 +1,23 @@
 //! Film under a fixed overpressure, for the static solver: a bag from any flatness, and the paper's erected capsule.
 
 use billow_solver::geometry::field::Field;
-use billow_solver::geometry::shapes::{icosphere, moved};
 use billow_solver::mechanics::film_model::FilmModel;
-use billow_solver::mechanics::supports::Supports;
 use billow_solver::models::film::erected;
 use billow_solver::scene::paper;
-use nalgebra::Vector3;
+use billow_solver::system::{FilmSystem, PressureLoad};
 
+use super::film::flattened_bag;
 use super::{
-    MODULUS, Parameter, Prepared, Runs, StabilityScene, THICKNESS, Values, Vessel, compression,
-    real, whole,
+    Build, MODULUS, Parameter, Prepared, StabilityScene, THICKNESS, Values, compression, real,
+    whole,
 };
 use crate::cases::Rig;
-use crate::stability::Method;
-
-/// Radius of the bag, m.
-const RADIUS: f64 = 0.2;
 
 const OVERPRESSURE: Parameter =
     real("overpressure", 100.0, [1e-9, 1e9], "Pa", "overpressure on the inside");
 
 /// The bag.
-pub const BAG: StabilityScene = StabilityScene {
+pub(super) const BAG: StabilityScene = StabilityScene {
     name: "bag_statics",
     meaning: "static equilibrium of a free bag (icosphere of 0.2 m) under an overpressure",
     parameters: &[
@@ -33,12 +28,11 @@ pub const BAG: StabilityScene = StabilityScene {
         real("flatness", 1.0, [0.0, 1.0], "ratio", "height at the start over that of the sphere"),
         OVERPRESSURE,
     ],
-    runs: Runs::Statics,
-    build: bag,
+    build: Build::Statics(bag),
 };
 
 /// The capsule.
-pub const CAPSULE: StabilityScene = StabilityScene {
+pub(super) const CAPSULE: StabilityScene = StabilityScene {
     name: "capsule_statics",
     meaning: "static equilibrium of the paper's capsule on its bottom ring, from its erected shape",
     parameters: &[
@@ -47,29 +41,23 @@ pub const CAPSULE: StabilityScene = StabilityScene {
         whole("subdivisions", 2.0, [2.0, 8.0], "design.subdivisions"),
         OVERPRESSURE,
     ],
-    runs: Runs::Statics,
-    build: capsule,
+    build: Build::Statics(capsule),
 };
 
-fn bag(_: &Rig, _: Method, values: &Values) -> Result<Prepared, String> {
-    let level = values.count("level");
-    let flatness = values.get("flatness");
-    // The reference of the film is the sphere.
-    let shell = moved(icosphere(level, RADIUS), |x| Vector3::new(x.x, x.y, x.z * flatness));
+fn bag(_: &Rig, values: &Values) -> Result<Prepared, String> {
+    let shell = flattened_bag(values);
     let model = FilmModel::of_shell(&values.film(), &shell).map_err(|error| error.to_string())?;
-    let supports = Supports::none(model.nodes());
+    let load = PressureLoad::Overpressure(values.get("overpressure"));
     let positions = Field::of(&shell.positions);
-    let overpressure = values.get("overpressure");
-    Ok(Prepared::Statics(Box::new(Vessel { model, supports, positions, overpressure })))
+    Ok(Prepared::Statics(Box::new(FilmSystem::free(model, load)), positions))
 }
 
-fn capsule(rig: &Rig, _: Method, values: &Values) -> Result<Prepared, String> {
-    let subdivisions = values.count("subdivisions");
-    let mut scene = paper::empty_capsule(subdivisions, 1.0);
+fn capsule(rig: &Rig, values: &Values) -> Result<Prepared, String> {
+    let mut scene = paper::empty_capsule(values.count("subdivisions"), 1.0);
     scene.film.thickness = values.get("thickness");
     scene.film.youngs_modulus = values.get("modulus");
     let capsule = erected(rig.instruction_set, &scene).map_err(|error| error.to_string())?;
-    let (model, supports, positions) = (capsule.model, capsule.supports, capsule.positions);
-    let overpressure = values.get("overpressure");
-    Ok(Prepared::Statics(Box::new(Vessel { model, supports, positions, overpressure })))
+    let load = PressureLoad::Overpressure(values.get("overpressure"));
+    let film = FilmSystem { supports: capsule.supports, ..FilmSystem::free(capsule.model, load) };
+    Ok(Prepared::Statics(Box::new(film), capsule.positions))
 }
