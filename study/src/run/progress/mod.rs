@@ -1,8 +1,10 @@
-//! The progress of a run on stderr: lines from time to time; on a terminal one line that is drawn again.
+//! The progress of a run on stderr: a bar on a terminal, elsewhere lines from time to time.
 
 use std::io::{self, IsTerminal, Write};
 use std::num::NonZero;
 use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::run::event::{Event, Reporter, Silent};
 
@@ -16,14 +18,10 @@ const MIN_REPORT_INTERVAL: Duration = Duration::from_secs(5);
 const MAX_REPORT_INTERVAL: Duration = Duration::from_mins(1);
 /// In between, the interval is this part of the elapsed time: a log of a long run stays short.
 const REPORTS_PER_ELAPSED_TIME: u32 = 20;
-/// Time between two drawings of the line of a terminal.
-const REDRAW_INTERVAL: Duration = Duration::from_millis(250);
 /// Running jobs in a progress report, at most.
 const MAX_JOBS_SHOWN: usize = 8;
-/// Characters of the line of a terminal, at most: the usual width.
-const MAX_DRAWN: usize = 79;
-/// Returns to the start of the line and clears it.
-const CLEAR: &str = "\r\x1b[K";
+/// The bar, then its message, cut to the width of the terminal.
+const BAR: &str = "{bar:20} {wide_msg}";
 
 /// How much a command prints on stderr.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,55 +39,66 @@ pub fn reporter(loudness: Loudness, threads: Option<NonZero<usize>>) -> Box<dyn 
     if loudness == Loudness::Quiet {
         return Box::new(Silent);
     }
-    let redraws = io::stderr().is_terminal();
-    Box::new(Lines::new(io::stderr(), loudness == Loudness::Verbose, redraws, threads))
+    let bar = io::stderr().is_terminal().then(hidden_bar);
+    Box::new(Lines::new(io::stderr(), loudness == Loudness::Verbose, bar, threads))
+}
+
+/// A bar that is drawn from the first job to run.
+fn hidden_bar() -> ProgressBar {
+    let style = ProgressStyle::with_template(BAR).unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::hidden().with_style(style.progress_chars("=> "))
 }
 
 /// Writes the progress.
 struct Lines<W> {
     out: W,
     verbose: bool,
-    /// Whether a report replaces the last one.
-    redraws: bool,
-    /// Whether a report stands in the line of the cursor.
-    is_drawn: bool,
+    /// Takes the place of reports on a terminal.
+    bar: Option<ProgressBar>,
     work: Work,
     /// When the last report was written.
     last: Option<Instant>,
 }
 
 impl<W: Write> Lines<W> {
-    fn new(out: W, verbose: bool, redraws: bool, threads: Option<NonZero<usize>>) -> Self {
-        Self { out, verbose, redraws, is_drawn: false, work: Work::new(threads), last: None }
+    fn new(
+        out: W,
+        verbose: bool,
+        bar: Option<ProgressBar>,
+        threads: Option<NonZero<usize>>,
+    ) -> Self {
+        Self { out, verbose, bar, work: Work::new(threads), last: None }
     }
 
     fn line(&mut self, text: &str) {
-        let clear = if std::mem::take(&mut self.is_drawn) { CLEAR } else { "" };
+        let out = &mut self.out;
         // A closed stderr must not stop a study.
-        let _ = writeln!(self.out, "{clear}{text}");
+        let mut write = || drop(writeln!(out, "{text}"));
+        match &self.bar {
+            Some(bar) => bar.suspend(write),
+            None => write(),
+        }
     }
 
-    /// Whether it is time for a report.
+    /// Whether it is time for a report. A bar limits its own drawings.
     fn is_due(&self) -> bool {
         let Some((start, _)) = self.work.start else { return false };
-        let of_log = (start.elapsed() / REPORTS_PER_ELAPSED_TIME)
+        let interval = (start.elapsed() / REPORTS_PER_ELAPSED_TIME)
             .clamp(MIN_REPORT_INTERVAL, MAX_REPORT_INTERVAL);
-        let interval = if self.redraws { REDRAW_INTERVAL } else { of_log };
-        self.last.is_some_and(|last| last.elapsed() >= interval)
+        self.bar.is_some() || self.last.is_some_and(|last| last.elapsed() >= interval)
     }
 
-    /// Writes finished and failed jobs, the remaining time, and the running jobs.
+    /// Shows finished and failed jobs, the remaining time, and the running jobs.
     fn report(&mut self) {
         self.last = Some(Instant::now());
         let summary = self.work.summary();
         let running = self.work.running.values().filter(|job| job.has_progress());
         let running: Vec<String> = running.take(MAX_JOBS_SHOWN).map(Running::text).collect();
-        if self.redraws {
+        if let Some(bar) = &self.bar {
             let of_job = running.first().filter(|_| self.work.running.len() == 1);
-            let text = of_job.map_or(summary.clone(), |job| format!("{summary}; {job}"));
-            let text: String = text.chars().take(MAX_DRAWN).collect();
-            let _ = write!(self.out, "{CLEAR}{text}").and_then(|()| self.out.flush());
-            self.is_drawn = true;
+            bar.set_length(self.work.jobs as u64);
+            bar.set_message(of_job.map_or(summary.clone(), |job| format!("{summary}; {job}")));
+            bar.set_position(self.work.finished as u64);
             return;
         }
         self.line(&summary);
@@ -113,6 +122,10 @@ impl<W: Write> Reporter for Lines<W> {
                 let open = jobs - finished;
                 self.line(&format!("{jobs} {word}, {finished} finished, {open} to run"));
                 self.last = Some(Instant::now());
+                if let Some(bar) = &self.bar {
+                    bar.set_draw_target(ProgressDrawTarget::stderr());
+                    self.report();
+                }
             }
             Event::JobSample { .. } if self.is_due() => self.report(),
             Event::JobFinished { id, status, verdict, .. } => {
@@ -126,14 +139,17 @@ impl<W: Write> Reporter for Lines<W> {
                 }
             }
             Event::Note(text) => self.line(&format!("note: {text}")),
-            Event::Ended if self.is_drawn => {
-                let summary = self.work.summary();
-                self.line(&summary);
+            Event::Ended => {
+                // A log has this line since the last job ended.
+                if let Some(bar) = self.bar.take_if(|bar| !bar.is_hidden()) {
+                    bar.finish_and_clear();
+                    let summary = self.work.summary();
+                    self.line(&summary);
+                }
             }
             Event::GenerationStarted { .. }
             | Event::JobStarted { .. }
-            | Event::JobSample { .. }
-            | Event::Ended => {}
+            | Event::JobSample { .. } => {}
         }
     }
 }

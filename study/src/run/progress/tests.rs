@@ -28,7 +28,7 @@ fn events() -> Vec<Event> {
 
 #[test]
 fn lines_report_the_progress_of_the_study() {
-    let mut lines = Lines::new(Vec::new(), true, false, NonZero::new(1));
+    let mut lines = Lines::new(Vec::new(), true, None, NonZero::new(1));
     for event in events() {
         lines.event(&event);
     }
@@ -40,7 +40,7 @@ fn lines_report_the_progress_of_the_study() {
 
 #[test]
 fn a_long_job_is_reported_from_time_to_time_with_the_remaining_time() {
-    let mut lines = Lines::new(Vec::new(), false, false, NonZero::new(1));
+    let mut lines = Lines::new(Vec::new(), false, None, NonZero::new(1));
     let [started, _, job, sample, finished] = events().try_into().unwrap();
     lines.event(&started);
     lines.event(&job);
@@ -64,30 +64,27 @@ fn a_long_job_is_reported_from_time_to_time_with_the_remaining_time() {
 
 #[test]
 fn a_study_without_jobs_to_run_writes_no_line() {
-    let mut lines = Lines::new(Vec::new(), false, false, NonZero::new(1));
+    let mut lines = Lines::new(Vec::new(), false, None, NonZero::new(1));
     lines.event(&Event::GenerationStarted { number: 0, jobs: 4, finished: 4 });
     lines.event(&Event::Ended);
     assert!(lines.out.is_empty());
 }
 
 #[test]
-fn a_terminal_has_one_line_that_is_drawn_again() {
-    let mut lines = Lines::new(Vec::new(), false, true, NonZero::new(1));
+fn a_terminal_has_a_bar_and_keeps_the_other_lines() {
+    let mut lines = Lines::new(Vec::new(), true, Some(hidden_bar()), NonZero::new(1));
+    let bar = lines.bar.clone().unwrap();
     let [started, note, job, sample, finished] = events().try_into().unwrap();
-    for event in [started, job, sample] {
+    for event in [started, note, job, sample] {
         lines.event(&event);
     }
-    let long_ago = Instant::now().checked_sub(Duration::from_secs(1)).unwrap();
-    lines.last = Some(long_ago);
-    let sample = events().remove(3);
-    for event in [sample, note, finished, Event::Ended] {
-        lines.event(&event);
-    }
-    let expected = "4 jobs, 3 finished, 1 to run\n\
-        \r\x1b[K3 of 4 jobs finished, 0 failed; abababab  t 0.500 of 2 s  z_centre 0.300 m  pre\
-        \r\x1b[Knote: a line is torn\n\
-        \r\x1b[K4 of 4 jobs finished, 1 failed\
-        \r\x1b[K4 of 4 jobs finished, 1 failed\n";
+    assert_eq!((bar.position(), bar.length()), (3, Some(4)));
+    let running = "3 of 4 jobs finished, 0 failed; abababab  t 0.500 of 2 s  z_centre 0.300 m";
+    assert!(bar.message().starts_with(running), "{}", bar.message());
+    lines.event(&finished);
+    assert_eq!(bar.position(), 4);
+    assert_eq!(bar.message(), "4 of 4 jobs finished, 1 failed");
+    let expected = "4 jobs, 3 finished, 1 to run\nnote: a line is torn\nabababab unstable\n";
     assert_eq!(String::from_utf8(lines.out).unwrap(), expected);
 }
 
