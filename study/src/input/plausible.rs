@@ -81,50 +81,29 @@ mod tests {
     use super::*;
     use crate::input::keys::{KEYS, named};
 
-    fn warning(path: &'static str, json: &str) -> Option<Implausible> {
-        let key = KEYS.iter().find(|key| key.path == path).unwrap();
-        let json = parse(json, "test").unwrap();
-        check(key, &json, &key.read(&json).unwrap())
-    }
-
     #[test]
-    fn a_forgotten_unit_is_found() {
+    fn a_value_outside_the_plausible_range_has_a_warning_with_what_is_meant() {
         for (path, json, meant) in [
-            ("gas.residual_gas_mass", "0.05", "0.05 g"),
-            ("gas.mass_flow_rate", "1", "1 g/s"),
-            ("solver.end_time", "500", "500 ms"),
-            ("film.density", "1.4", "1.4 g/cm3"),
-            ("film.temperature", "20", "20 degC"),
-            ("film.youngs_modulus", "3450", "3450 MPa"),
-            ("design.height", "100", "100 cm"),
-            ("gas.leak_area", "1", "1 mm2"),
+            ("gas.residual_gas_mass", "0.05", "\"0.05 g\""),
+            ("gas.mass_flow_rate", "1", "\"1 g/s\""),
+            ("solver.end_time", "500", "\"500 ms\""),
+            ("film.density", "1.4", "\"1.4 g/cm3\""),
+            ("film.temperature", "20", "\"20 degC\""),
+            ("design.height", "100", "\"100 cm\""),
+            // A written unit is not called missing.
+            ("gas.residual_gas_mass", "\"50 g\"", "check number and unit"),
+            ("gas.residual_gas_mass", "5e-5", ""),
+            ("gas.residual_gas_mass", "0", ""),
+            ("gas.mass_flow_rate", "\"5 g/s\"", ""),
+            ("gas.heat_transfer", "\"isothermal\"", ""),
+            ("film.loss_factor", "0.5", ""),
         ] {
-            let warning = warning(path, json).unwrap_or_else(|| panic!("{path} = {json}"));
-            assert!(warning.next.contains(&format!("{meant:?}")), "{path}: {warning:?}");
-            assert!(warning.problem.contains("plausible range"), "{warning:?}");
+            let key = KEYS.iter().find(|key| key.path == path).unwrap();
+            let json = parse(json, "test").unwrap();
+            let warning = check(key, &json, &key.read(&json).unwrap());
+            let next = warning.map(|warning| warning.next).unwrap_or_default();
+            assert!(next.contains(meant) && next.is_empty() == meant.is_empty(), "{path}: {next}");
         }
-    }
-
-    #[test]
-    fn a_plausible_value_gives_no_warning() {
-        for (path, json) in [
-            ("gas.residual_gas_mass", "5e-5"),
-            ("gas.residual_gas_mass", "0"),
-            ("gas.mass_flow_rate", "\"5 g/s\""),
-            ("film.thickness", "25.4e-6"),
-            ("design.height", "1"),
-            ("gas.heat_transfer", "\"isothermal\""),
-            ("film.loss_factor", "0.5"),
-        ] {
-            assert_eq!(warning(path, json), None, "{path} = {json}");
-        }
-    }
-
-    #[test]
-    fn a_written_unit_is_not_called_missing() {
-        let warning = warning("gas.residual_gas_mass", "\"50 g\"").unwrap();
-        assert_eq!(warning.problem, "is outside the plausible range, 0 to 20 g");
-        assert!(!warning.next.contains("meant"), "{warning:?}");
     }
 
     #[test]
@@ -132,6 +111,5 @@ mod tests {
         const THICKNESS: &Key = named(KEYS, "film.thickness");
         assert_eq!(meant(THICKNESS, &Json::Integer(25)), Some("25 um".to_owned()));
         assert_eq!(meant(THICKNESS, &Json::Integer(0)), None);
-        assert_eq!(meant(THICKNESS, &Json::Text("25 m".to_owned())), None);
     }
 }

@@ -37,7 +37,7 @@ const CLOSE_TEXT: &str = "write the quote at the end of the text";
 struct Fault {
     /// Its place, a byte of the text.
     offset: usize,
-    /// The key that the place belongs to, as in `design.N`; empty at the top.
+    /// The key of a value that is refused, as in `design.N`; empty for a fault of the syntax.
     key: String,
     problem: String,
     hint: String,
@@ -169,24 +169,14 @@ fn tree(value: &ast::Value<'_>, text: &str, path: &str) -> Result<Json, Fault> {
     }
 }
 
-/// An object or list that is open where a fault stands.
-struct Open {
-    offset: usize,
-    bracket: char,
-    /// Its path.
-    path: String,
-    /// The key whose value follows, or the index of the item.
-    key: String,
-    index: usize,
-}
-
 /// What a reader needs to know about the text before a fault.
 #[derive(Default)]
 struct Before {
-    open: Vec<Open>,
+    /// The places of the open brackets.
+    open: Vec<usize>,
     /// The bracket that was open where a closing bracket stood at the indent of an outer one: most
     /// likely it is the one that was not closed.
-    suspect: Option<(usize, char)>,
+    suspect: Option<usize>,
     /// A text that goes on in the next line: most likely its quote is missing.
     long_text: Option<usize>,
 }
@@ -194,7 +184,6 @@ struct Before {
 impl Before {
     fn of(text: &str, end: usize) -> Self {
         let mut before = Self::default();
-        let mut last = String::new();
         let mut scanner = Scanner::new(text, &jsonc_parser::ScannerOptions::default());
         while let Ok(Some(token)) = scanner.scan() {
             let start = scanner.token_start();
@@ -202,43 +191,15 @@ impl Before {
                 break;
             }
             match token {
-                Token::OpenBrace | Token::OpenBracket => {
-                    let bracket = if token == Token::OpenBrace { '{' } else { '[' };
-                    let (path, key) = (before.key(), String::new());
-                    before.open.push(Open { offset: start, bracket, path, key, index: 0 });
-                }
+                Token::OpenBrace | Token::OpenBracket => before.open.push(start),
                 Token::CloseBrace | Token::CloseBracket => before.close(text, start),
-                Token::Comma => {
-                    if let Some(open) = before.open.last_mut() {
-                        open.key.clear();
-                        open.index += 1;
-                    }
-                }
-                Token::Colon => {
-                    if let Some(open) = before.open.last_mut() {
-                        open.key = std::mem::take(&mut last);
-                    }
-                }
-                Token::String(name) => {
-                    if text[start..scanner.token_end()].contains('\n') {
-                        before.long_text.get_or_insert(start);
-                    }
-                    last = name.into_owned();
+                Token::String(_) if text[start..scanner.token_end()].contains('\n') => {
+                    before.long_text.get_or_insert(start);
                 }
                 _ => {}
             }
         }
         before
-    }
-
-    /// The path of the value that follows.
-    fn key(&self) -> String {
-        let Some(open) = self.open.last() else { return String::new() };
-        match open.bracket {
-            '[' => format!("{}[{}]", open.path, open.index),
-            _ if open.key.is_empty() => open.path.clone(),
-            _ => below(&open.path, &open.key),
-        }
     }
 
     /// Closes the innermost bracket.
@@ -251,10 +212,10 @@ impl Before {
         let begins_line = text[line(offset)..offset].trim().is_empty();
         if let Some(inner) = self.open.pop()
             && begins_line
-            && indent(offset) < indent(inner.offset)
-            && self.open.iter().any(|outer| indent(outer.offset) == indent(offset))
+            && indent(offset) < indent(inner)
+            && self.open.iter().any(|outer| indent(*outer) == indent(offset))
         {
-            self.suspect.get_or_insert((inner.offset, inner.bracket));
+            self.suspect.get_or_insert(inner);
         }
     }
 }
@@ -266,7 +227,6 @@ fn explained(error: &ParseError, text: &str) -> Fault {
     let mut offset = error.range().start;
     let is_open = matches!(error.kind(), Kind::UnterminatedObject | Kind::UnterminatedArray);
     let before = Before::of(text, if is_open { text.len() } else { offset });
-    let mut key = before.key();
     let rest = &text[offset..];
     let word = rest.trim_start().split([',', '}', ']', '{', '[', '"', ':', '\n', '\r']).next();
     let word = quote::echo(word.unwrap_or("").trim_end());
@@ -279,11 +239,10 @@ fn explained(error: &ParseError, text: &str) -> Fault {
             say("this text has no closing quote in its line", CLOSE_TEXT)
         }
         Kind::UnterminatedObject | Kind::UnterminatedArray => {
-            let last = before.open.last().map(|open| (open.offset, open.bracket));
-            let (start, bracket) = before.suspect.or(last).unwrap_or((offset, '{'));
-            (offset, key) = (start, String::new());
-            let closing = if bracket == '{' { '}' } else { ']' };
-            (format!("this {bracket} is not closed"), format!("add the missing {closing}"))
+            offset = before.suspect.or(before.open.last().copied()).unwrap_or(offset);
+            let [open, close] =
+                if text[offset..].starts_with('{') { ["{", "}"] } else { ["[", "]"] };
+            (format!("this {open} is not closed"), format!("add the missing {close}"))
         }
         Kind::NestingDepthExceeded => say(
             "recursion limit: too many brackets inside each other",
@@ -335,7 +294,7 @@ fn explained(error: &ParseError, text: &str) -> Fault {
         }
         kind => say(&kind.to_string().to_lowercase(), VALUES),
     };
-    Fault { offset, key, problem, hint }
+    Fault { offset, key: String::new(), problem, hint }
 }
 
 #[cfg(test)]
@@ -347,38 +306,37 @@ mod tests {
 
     #[test]
     fn a_fault_stands_where_a_reader_would_point() {
-        for (marked, key, problem, hint) in [
-            ("{\"a\": {\"b\": 1¦ \"c\": 2}}", "a", "a comma is missing", "write a comma"),
-            ("{\n  \"a\": [1, 2¦\n  3]\n}", "a", "a comma is missing", "close"),
-            ("{\"a\": [6,¦, 5]}", "a[1]", "comma", "a value is a number"),
-            ("{\"a\": ¦}", "a", "", "a value is a number"),
-            ("{\"a\" ¦6}", "", "a colon is missing", "write \"key\": value"),
-            ("{¦a: 6}", "", "a key stands in double quotes", "write \"a\":"),
-            ("{¦'a': 6}", "", "' is not the quote of JSON", "straight double quotes"),
-            ("{\"a\": ¦“x”}", "a", "U+201C", "straight double quotes"),
-            ("{\"a\": ¦film}", "a", "a text stands in double quotes", "write \"film\""),
-            ("{\"a\": ¦NaN}", "a", "a text stands in double quotes", "a"),
-            ("{\"a\": 5 ¦g/s, \"b\": 1}", "a", "a number with a unit", "write \"5 g/s\""),
-            ("{\"a\": 30 ¦°}", "a", "a number with a unit is a text", "write \"30 °\""),
-            ("{\"a\": ¦0x10}", "a", "hexadecimal", "a value is a number"),
-            ("{\"a\": ¦1e999}", "a", "number out of range", "1.8e308"),
-            ("{\"a\": 0,¦5, \"b\": 1}", "", "a key stands in double quotes", "as in 0.5"),
-            ("{\"a\": ¦\"x,\n\"b\": 3}", "a", "no closing quote in its line", "end of the text"),
-            ("{\"a\": ¦\"x", "a", "no closing quote", "end of the text"),
-            ("{\"a\": \"C:¦\\data\"}", "a", "invalid escape", "write \\\\"),
-            ("{\"a\": {\"b\": 1,\n ¦\"b\": 2}}", "a", "first in line 1, column 8", "one"),
-            ("{\"a\": [1, 2¦}}", "a", "close brace", "a value"),
-            ("{\"a\": 1}¦}", "", "the object has ended before this", "too early"),
-            ("¦{\"a\": 1", "", "this { is not closed", "add the missing }"),
-            ("{\"a\": ¦[1, 2", "", "this [ is not closed", "add the missing ]"),
+        for (marked, problem, hint) in [
+            ("{\"a\": {\"b\": 1¦ \"c\": 2}}", "a comma is missing", "write a comma"),
+            ("{\n  \"a\": [1, 2¦\n  3]\n}", "a comma is missing", "close"),
+            ("{\"a\": [6,¦, 5]}", "comma", "a value is a number"),
+            ("{\"a\": ¦}", "", "a value is a number"),
+            ("{\"a\" ¦6}", "a colon is missing", "write \"key\": value"),
+            ("{¦a: 6}", "a key stands in double quotes", "write \"a\":"),
+            ("{¦'a': 6}", "' is not the quote of JSON", "straight double quotes"),
+            ("{\"a\": ¦“x”}", "U+201C", "straight double quotes"),
+            ("{\"a\": ¦film}", "a text stands in double quotes", "write \"film\""),
+            ("{\"a\": ¦NaN}", "a text stands in double quotes", "a"),
+            ("{\"a\": 5 ¦g/s, \"b\": 1}", "a number with a unit", "write \"5 g/s\""),
+            ("{\"a\": 30 ¦°}", "a number with a unit is a text", "write \"30 °\""),
+            ("{\"a\": ¦0x10}", "hexadecimal", "a value is a number"),
+            ("{\"a\": ¦1e999}", "number out of range", "1.8e308"),
+            ("{\"a\": 0,¦5, \"b\": 1}", "a key stands in double quotes", "as in 0.5"),
+            ("{\"a\": ¦\"x,\n\"b\": 3}", "no closing quote in its line", "end of the text"),
+            ("{\"a\": ¦\"x", "no closing quote", "end of the text"),
+            ("{\"a\": \"C:¦\\data\"}", "invalid escape", "write \\\\"),
+            ("{\"a\": {\"b\": 1,\n ¦\"b\": 2}}", "first in line 1, column 8", "one"),
+            ("{\"a\": [1, 2¦}}", "close brace", "a value"),
+            ("{\"a\": 1}¦}", "the object has ended before this", "too early"),
+            ("¦{\"a\": 1", "this { is not closed", "add the missing }"),
+            ("{\"a\": ¦[1, 2", "this [ is not closed", "add the missing ]"),
             (
                 "{\n  \"a\": ¦{\n    \"b\": 1,\n  \"c\": {\n    \"d\": 2\n  }\n}\n",
-                "",
                 "this { is not closed",
                 "add the missing }",
             ),
-            ("¦design:\n  N: 6\n", "", "begins with {", "another kind of file"),
-            ("¦<html>", "", "begins with {", "another kind of file"),
+            ("¦design:\n  N: 6\n", "begins with {", "another kind of file"),
+            ("¦<html>", "begins with {", "another kind of file"),
         ] {
             let text = marked.replace(MARK, "");
             let error = parse(&text, "f").unwrap_err();
@@ -386,7 +344,7 @@ mod tests {
             let shown = format!("{marked}\n{error}");
             assert_eq!(error.file, format!("f:{line}:{column}"), "{shown}");
             assert!(error.problem.contains(problem) && error.hint.contains(hint), "{shown}");
-            assert!(error.key.starts_with(key) && !error.allowed.is_empty(), "{shown}");
+            assert!(!error.allowed.is_empty(), "{shown}");
         }
         let deep = parse(&"[".repeat(100_000), "f").unwrap_err();
         assert!(deep.problem.contains("recursion limit"));

@@ -105,9 +105,6 @@ impl Solver {
 
     /// Compares a run with the static equilibria of its design. A failed run has no final shape, and needs
     /// the design shape only.
-    ///
-    /// # Errors
-    /// [`NoReference::Stopped`] if `continues` returned `false`.
     fn judge(
         &self,
         job: &Job,

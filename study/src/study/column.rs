@@ -23,22 +23,12 @@ impl PartialEq for Column {
     }
 }
 
-/// A section of a study file whose members are keys and their values.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Section {
-    /// The axes.
-    Grid,
-    /// The replicates.
-    Replicates,
-}
-
 /// Finds what the name of an axis stands for. `path` is the place of the axis in the file.
 pub(super) fn find(
     name: &str,
     path: &str,
     value: &Json,
     settings: &Settings,
-    section: Section,
     source: &Source,
 ) -> Result<Column, InputError> {
     let index = settings.find(name).filter(|index| settings.key(*index).varies());
@@ -58,15 +48,9 @@ pub(super) fn find(
         let problem = "is the name of several keys";
         return Err(source.error(path, value, problem, same_leaf.join(", ")));
     }
-    let (words, use_of_keys): (&[&str], _) = match section {
-        Section::Grid => (&["zip", "points", "filter"], "a grid can vary"),
-        Section::Replicates => (&[], "can repeat a point"),
-    };
     let varied = KEYS.iter().enumerate().filter(|(_, key)| key.varies());
     let known = varied.flat_map(|(index, key)| [keys::short_name(index), key.path]);
-    let near = or_nearest(name, known.chain(words.iter().copied()));
-    let problem = format!("is not a key that {use_of_keys}{near}");
-    let mut allowed = vec!["keys of the study, as N or film.thickness".to_owned()];
-    allowed.extend((!words.is_empty()).then(|| words.join(", ")));
-    Err(source.error(path, value, problem, allowed.join("; ")))
+    let near = or_nearest(name, known.chain(["zip", "points", "filter"]));
+    let problem = format!("is not a key that a study can vary{near}");
+    Err(source.error(path, value, problem, "keys of the study, as N or film.thickness"))
 }

@@ -100,9 +100,6 @@ fn set_axes(point: &mut Settings, grid: &Grid, axes: &[&Axis], number: usize) {
 }
 
 /// Number of points of the product, and of all points before the filter.
-///
-/// # Errors
-/// When a plan may not have as many.
 fn count(grid: &Grid, source: &Source, max_points: usize) -> Result<(usize, usize), InputError> {
     let has_axes = grid.axes.iter().any(|axis| !axis.kind.repeats());
     let product = match (has_axes, grid.points.is_empty()) {

@@ -17,47 +17,15 @@ const FEASIBLE: &str = "feasible";
 /// The key whose words are the strategies of the study.
 const STRATEGY: usize = position(KEYS, "strategy");
 
-/// A quantity that the fold solves. Its name stands for the solved value, not for the key of the same
-/// name; without a fold, for the value the study asks for, where it has such a key.
-#[derive(Debug, Clone, Copy)]
-struct Solved {
-    name: &'static str,
-    dimension: Dimension,
-    value: fn(&FoldPattern) -> f64,
-    key: Option<usize>,
-}
-
-const fn solved(
-    name: &'static str,
-    dimension: Dimension,
-    value: fn(&FoldPattern) -> f64,
-    key: Option<usize>,
-) -> Solved {
-    Solved { name, dimension, value, key }
-}
-
-const SOLVED: [Solved; 6] = [
-    solved("phi", Dimension::Angle, |pattern| pattern.angles.phi, None),
-    solved("alpha1", Dimension::Angle, |pattern| pattern.angles.alpha1, None),
-    solved("ring_ratio", Dimension::Number, |pattern| pattern.angles.ring_ratio, None),
-    solved(
-        "half_angle",
-        Dimension::Angle,
-        |pattern| pattern.half_angle,
-        Some(position(KEYS, "design.half_angle")),
-    ),
-    solved(
-        "top_radius",
-        Dimension::Length,
-        |pattern| pattern.top_radius,
-        Some(position(KEYS, "design.top_radius")),
-    ),
-    solved(
-        "height",
-        Dimension::Length,
-        |pattern| pattern.height,
-        Some(position(KEYS, "design.height")),
-    ),
+/// The quantities that the fold solves. A name stands for the solved value, not for the key of the same name;
+/// without a fold, for the value the study asks for, where it has such a key.
+const SOLVED: [(&str, Dimension, fn(&FoldPattern) -> f64); 6] = [
+    ("phi", Dimension::Angle, |pattern| pattern.angles.phi),
+    ("alpha1", Dimension::Angle, |pattern| pattern.angles.alpha1),
+    ("ring_ratio", Dimension::Number, |pattern| pattern.angles.ring_ratio),
+    ("half_angle", Dimension::Angle, |pattern| pattern.half_angle),
+    ("top_radius", Dimension::Length, |pattern| pattern.top_radius),
+    ("height", Dimension::Length, |pattern| pattern.height),
 ];
 
 /// What a name stands for.
@@ -89,9 +57,8 @@ impl Filter {
         settings: &Settings,
     ) -> Result<Self, ExpressionError> {
         let mut variables = vec![(FEASIBLE.to_owned(), Type::Bool, Named::Feasible)];
-        variables.extend(SOLVED.iter().enumerate().map(|(index, solved)| {
-            let kind = Type::Quantity(solved.dimension, &[]);
-            (solved.name.to_owned(), kind, Named::Solved(index))
+        variables.extend(SOLVED.iter().enumerate().map(|(index, (name, dimension, _))| {
+            ((*name).to_owned(), Type::Quantity(*dimension, &[]), Named::Solved(index))
         }));
         let keys = KEYS.iter().enumerate().filter(|(_, key)| key.varies());
         let keys = keys.flat_map(|(index, key)| {
@@ -124,11 +91,9 @@ impl Filter {
         let value = |named: &Option<Named>| match (named, fold) {
             (None, _) => Value::Null,
             (Some(Named::Feasible), fold) => Value::Bool(fold.is_ok()),
-            (Some(Named::Solved(index)), Ok(pattern)) => {
-                Value::Number((SOLVED[*index].value)(pattern))
-            }
+            (Some(Named::Solved(index)), Ok(pattern)) => Value::Number((SOLVED[*index].2)(pattern)),
             (Some(Named::Solved(index)), Err(_)) => {
-                SOLVED[*index].key.map_or(Value::Null, |key| point.at(key).clone())
+                keys::find(SOLVED[*index].0).map_or(Value::Null, |key| point.at(key).clone())
             }
             (Some(Named::Value(index)), _) => point.at(*index).clone(),
         };

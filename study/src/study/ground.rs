@@ -24,9 +24,6 @@ fn pressure_at_start(scene: &Scene, stowed_volume: f64) -> f64 {
 }
 
 /// Mass (kg) of gas that fills the stowed capsule at ambient pressure and film temperature.
-///
-/// # Errors
-/// When the study gives a mass of residual gas too.
 pub(super) fn mass_at_ambient_pressure(
     design: &FoldDesign,
     settings: &Settings,

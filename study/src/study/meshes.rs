@@ -27,9 +27,6 @@ const COUNT: RangeInclusive<usize> = 2..=3;
 
 impl Grid {
     /// Reads the meshes, as the last axis.
-    ///
-    /// # Errors
-    /// A list that is not two or three ascending meshes of the table; a study that varies the mesh, or searches.
     pub(super) fn read_meshes(
         &mut self,
         json: Option<&Json>,
@@ -72,9 +69,6 @@ impl Grid {
 }
 
 /// Reads a list of meshes of the table of mesh errors.
-///
-/// # Errors
-/// A mesh that the table does not have; meshes that are too many, too few or not in ascending order.
 pub(super) fn read_list(
     json: &Json,
     path: &str,
@@ -107,9 +101,6 @@ pub(super) fn read_list(
 }
 
 /// Refuses models without a mesh: their runs on each would be equal.
-///
-/// # Errors
-/// A point with a model other than film, in a study with several meshes.
 pub(super) fn refuse_other_models(
     grid: &Grid,
     points: &[Point],

@@ -1,7 +1,7 @@
 //! The parameters of a study: their names, values and units.
 
 use super::Study;
-use super::column::{self, Section};
+use super::column;
 use crate::input::json::Json;
 use crate::input::keys::Key;
 use crate::input::source::Source;
@@ -95,8 +95,7 @@ impl Study {
     /// A key by its path or its last part; `None` for another name.
     pub fn key(&self, name: &str) -> Option<StudyKey> {
         let source = Source::new("");
-        let column =
-            column::find(name, name, &Json::Null, &self.settings, Section::Grid, &source).ok()?;
+        let column = column::find(name, name, &Json::Null, &self.settings, &source).ok()?;
         let (key, value) = (column.key, self.settings.at(column.index).clone());
         Some(StudyKey { name: column.name, key, value })
     }

@@ -19,10 +19,6 @@ const ALLOWED: &str = "{\"from\", \"to\", and \"steps\" (number of values) or \"
                        \"spacing\": linear or log}";
 
 /// The values of a range of a key; `path` is its place in the file, as in `grid.N`.
-///
-/// # Errors
-/// When the range is incomplete or contradicts itself, has more values than a grid has points, or
-/// has a value that the key does not allow.
 pub(super) fn values(
     key: &Key,
     json: &Json,

@@ -4,7 +4,6 @@
 //! charts show their median, range and proportions.
 
 use super::REPLICATES;
-use super::column::Section;
 use super::grid::{Axis, AxisKind, Context, Grid};
 use crate::input::json::Json;
 use crate::input::keys::{KEYS, position};
@@ -20,9 +19,6 @@ const ALLOWED: &str =
 
 impl Grid {
     /// Reads the replicates, as axes after all others.
-    ///
-    /// # Errors
-    /// A name that is not a key, a value that the key does not allow, a key that the grid varies.
     pub(super) fn read_replicates(
         &mut self,
         json: Option<&Json>,
@@ -40,7 +36,7 @@ impl Grid {
         };
         for (name, value) in members {
             let path = format!("{REPLICATES}.{name}");
-            let column = self.column(name, &path, value, Section::Replicates, context)?;
+            let column = self.column(name, &path, value, context)?;
             let values = match value {
                 Json::Integer(count) if self.columns[column].index == SEED => {
                     &seeds(*count, &path, value, context)?

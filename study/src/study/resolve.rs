@@ -15,9 +15,6 @@ use crate::input::value::brief_number;
 use crate::platform::error::InputError;
 
 /// The scene of a point: the values of its keys, completed by its strategy and its model.
-///
-/// # Errors
-/// When a key is missing, or two keys contradict each other.
 pub(super) fn scene(
     settings: &Settings,
     design: FoldDesign,

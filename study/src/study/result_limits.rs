@@ -19,9 +19,6 @@ const COMPARISONS: [(&str, bool, bool); 4] =
     [("<=", false, true), (">=", true, true), ("<", false, false), (">", true, false)];
 
 /// Reads the limits, in the order of the file.
-///
-/// # Errors
-/// A name that is not a measure, a condition that is not one, a bound of another dimension.
 pub(super) fn read(json: Option<&Json>, source: &Source) -> Result<Vec<ResultLimit>, InputError> {
     let Some(json) = json else { return Ok(Vec::new()) };
     let mut limits: Vec<ResultLimit> = Vec::new();

@@ -2,7 +2,7 @@
 //! file writes for a key, first under `grid`, then in its section; for a measure those of its limit.
 
 use super::accuracy::ACCURACY;
-use super::column::{self, Section};
+use super::column;
 use super::{JOB_LIMITS, LIMITS, REPLICATES, UNITS};
 use crate::input::json::Json;
 use crate::input::keys::{self, KEYS, KeyKind, STUDY};
@@ -23,9 +23,6 @@ const ALLOWED: &str =
     "a unit of this quantity, as in {\"mass_flow_rate\": \"g/s\", \"t_90_z_rim\": \"ms\"}";
 
 /// Reads the units of a study whose keys and grid are valid.
-///
-/// # Errors
-/// A name in `units` that is neither a key nor a column, or a unit of another dimension.
 pub(super) fn read(
     tree: &Json,
     settings: &Settings,
@@ -45,13 +42,10 @@ pub(super) fn read(
             units.set(&name, symbol);
         }
     }
-    for section in ["grid", REPLICATES] {
-        written_in_grid(tree.get(section), &mut |name, value| {
-            if let Ok(column) = column::find(name, section, value, settings, Section::Grid, source)
-            {
-                suggest(&mut units, &column.name, value);
-            }
-        });
+    for (name, value) in ["grid", REPLICATES].into_iter().flat_map(|name| varied(tree.get(name))) {
+        if let Some(index) = settings.find(name) {
+            suggest(&mut units, &settings.name(index), value);
+        }
     }
     if let Some(Json::Object(limits)) = tree.get(LIMITS) {
         for (name, value) in limits {
@@ -66,19 +60,18 @@ pub(super) fn read(
 }
 
 /// The name under which the unit of a key or column is kept, and its SI unit.
-pub(super) fn quantity(
+fn quantity(
     name: &str,
     path: &str,
     value: &Json,
     settings: &Settings,
     source: &Source,
 ) -> Result<(String, &'static str), InputError> {
-    if let Ok(column) = column::find(name, path, value, settings, Section::Grid, source) {
+    if let Ok(column) = column::find(name, path, value, settings, source) {
         return Ok((column.name, column.key.unit()));
     }
-    let current = name;
-    if let Some(column) = COLUMNS.iter().find(|column| column.name == current) {
-        return Ok((current.to_owned(), column.unit));
+    if let Some(column) = COLUMNS.iter().find(|column| column.name == name) {
+        return Ok((name.to_owned(), column.unit));
     }
     let known = KEYS.iter().enumerate().filter(|(_, key)| key.varies());
     let known = known.map(|(index, _)| keys::short_name(index));
@@ -87,24 +80,19 @@ pub(super) fn quantity(
     Err(source.error(path, value, problem, "keys, as mass_flow_rate; columns, as peak_vz"))
 }
 
-/// Calls `found` with every name that the grid varies, and what it gives: lists, ranges, values.
-fn written_in_grid(grid: Option<&Json>, found: &mut dyn FnMut(&str, &Json)) {
-    let Some(Json::Object(members)) = grid else { return };
+/// Every name that a grid varies, and what it gives: lists, ranges, values.
+fn varied(grid: Option<&Json>) -> Vec<(&str, &Json)> {
+    let Some(Json::Object(members)) = grid else { return Vec::new() };
+    let mut found = Vec::new();
     for (name, value) in members {
         match (name.as_str(), value) {
             ("zip" | "points", Json::List(items)) => {
-                for item in items {
-                    if let Json::Object(members) = item {
-                        for (name, value) in members {
-                            found(name, value);
-                        }
-                    }
-                }
+                found.extend(items.iter().flat_map(|item| varied(Some(item))));
             }
-            ("filter", _) => {}
-            _ => found(name, value),
+            (name, value) => found.push((name, value)),
         }
     }
+    found
 }
 
 /// The units of the keys of an object and of the objects in it; `path` is its place in the file.

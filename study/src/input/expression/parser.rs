@@ -10,7 +10,8 @@ use crate::platform::quote;
 /// Largest nesting depth of an expression (chosen: far beyond any condition a user writes, and within
 /// the stack of a thread).
 const MAX_DEPTH: usize = 200;
-/// Length of the longest expression read, bytes (chosen: a list of hundreds of cases fits).
+/// Length of the longest expression read, bytes (chosen: a list of hundreds of cases fits, and a chain of this
+/// length is evaluated within the stack of a thread).
 const MAX_LENGTH: usize = 10_000;
 /// Precedence of `not`: between `and` and a comparison.
 const NOT: u8 = 3;
@@ -43,7 +44,6 @@ struct Part {
     node: Node,
     kind: Kind,
     span: Span,
-    depth: usize,
 }
 
 /// Reads a condition.
@@ -116,13 +116,9 @@ impl Parser<'_> {
             }
             self.position += 1;
             let right = self.binary(operator.precedence() + 1)?;
-            let depth = 1 + left.depth.max(right.depth);
             let span = (left.span.0, right.span.1);
-            if depth > MAX_DEPTH {
-                return Err(self.refuse(span, "nested too deeply"));
-            }
             let (node, kind) = self.combined(span, operator, left, right)?;
-            left = Part { node, kind, span, depth };
+            left = Part { node, kind, span };
         }
         self.depth -= 1;
         Ok(left)
@@ -142,16 +138,16 @@ impl Parser<'_> {
             },
             Token::Not => {
                 let inner = self.binary(NOT)?;
-                let (span, depth) = ((span.0, inner.span.1), 1 + inner.depth);
+                let span = (span.0, inner.span.1);
                 let node = Node::Not(Box::new(self.truth(inner, "not")?));
-                return Ok(Part { node, kind: Kind::Bool, span, depth });
+                return Ok(Part { node, kind: Kind::Bool, span });
             }
             Token::Operator(Operator::Subtract) => {
                 let inner = self.binary(Operator::Divide.precedence() + 1)?;
-                let (span, depth) = ((span.0, inner.span.1), 1 + inner.depth);
+                let span = (span.0, inner.span.1);
                 let (node, powers) = self.number(inner, "-")?;
                 let (node, kind) = (Node::Negate(Box::new(node)), Kind::Number(powers));
-                return Ok(Part { node, kind, span, depth });
+                return Ok(Part { node, kind, span });
             }
             Token::Open => {
                 let inner = self.binary(0)?;
@@ -169,7 +165,7 @@ impl Parser<'_> {
                 return Err(self.refuse(span, "a number, text or name is missing before this"));
             }
         };
-        Ok(Part { node, kind, span, depth: 1 })
+        Ok(Part { node, kind, span })
     }
 
     fn variable(&self, span: Span, name: &str) -> Result<(Node, Kind), ExpressionError> {

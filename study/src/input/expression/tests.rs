@@ -136,28 +136,17 @@ fn excessive_depth_is_an_error() {
         "(".repeat(5_000),
         "-".repeat(5_000),
         "not ".repeat(2_000),
-        format!("{}1 == 1", "1 + ".repeat(2_000)),
         format!("{}N == 1{}", "(".repeat(4_000), ")".repeat(4_000)),
         "N".repeat(20_000),
         "é".repeat(9_999),
     ] {
         assert!(Expression::condition(&text, &variables()).is_err());
     }
-    let long = vec!["N == 6"; 150].join(" or ");
-    assert!(holds(&long), "a long list of cases is not deep nesting");
+    assert!(holds(&vec!["N == 6"; 150].join(" or ")), "a long list of cases is not deep nesting");
+    assert!(holds(&format!("{}1 > 1", "1 + ".repeat(2_000))));
 }
 
 proptest! {
-    #[test]
-    fn random_text_is_a_condition_or_an_error_that_points_into_it(text in "\\PC{0,60}") {
-        match Expression::condition(&text, &variables()) {
-            Ok(expression) => prop_assert_eq!(expression.text(), text),
-            Err(error) => {
-                prop_assert!(!error.problem.is_empty() && error.pointer("").contains('^'));
-            }
-        }
-    }
-
     #[test]
     fn random_words_are_a_condition_or_an_error(words in prop::collection::vec(
         prop::sample::select(vec![

@@ -63,9 +63,6 @@ impl Quantity {
     }
 
     /// Reads a number in SI, a text with a unit, or a word.
-    ///
-    /// # Errors
-    /// The problem in words.
     pub(crate) fn read(&self, json: &Json) -> Result<Value, String> {
         let number = match json {
             Json::Integer(number) => *number as f64,

@@ -113,25 +113,4 @@ fn spelling_does_not_change_a_number() {
         read("gas.leak_area", "-0.0").map(|value| format!("{value:?}")),
         Ok("Number(0.0)".to_owned())
     );
-    for (path, json, problem) in [
-        ("design.N", "6.5", "is not a whole number"),
-        ("design.N", "\"6\"", "is a text; write the number without quotes"),
-        ("design.N", "3", "is out of range"),
-        ("design.height", "true", "is true or false, not a length"),
-        ("design.height", "\"5 kg\"", "is a mass, not a length"),
-        ("design.height", "0", "is out of range"),
-        ("design.fit", "\"cones\"", "did you mean \"cone\"?"),
-        ("design.caps", "\"circular\"", "circular caps belong to the erected shape"),
-    ] {
-        let refusal = read(path, json).unwrap_err();
-        assert!(refusal.problem.contains(problem), "{path} {json}: {refusal:?}");
-    }
-}
-
-#[test]
-fn mistyped_names_find_the_nearest() {
-    let known = || KEYS.iter().map(Key::leaf);
-    assert_eq!(nearest("thicknes", known()), Some("thickness"));
-    assert_eq!(nearest("mass_flowrate", known()), Some("mass_flow_rate"));
-    assert_eq!(nearest("colour", known()), None);
 }

@@ -146,15 +146,8 @@ pub const fn model(kind: ModelKind) -> Model {
 }
 
 /// Every model, in the order of the documentation.
-pub const MODELS: [Model; ModelKind::ALL.len()] = {
-    let mut models = [model(ModelKind::Film); ModelKind::ALL.len()];
-    let mut index = 0;
-    while index < models.len() {
-        models[index] = model(ModelKind::ALL[index]);
-        index += 1;
-    }
-    models
-};
+pub const MODELS: [Model; 3] =
+    [model(ModelKind::Piston), model(ModelKind::Storeys), model(ModelKind::Film)];
 
 /// Keys that change no result of film with the integrator of this name.
 pub fn ignored_by_integrator(name: &str) -> &'static [&'static str] {
@@ -169,30 +162,25 @@ pub fn default_integrator() -> &'static str {
     integrators::entry(IntegratorKind::default()).name
 }
 
-/// Values of `solver.integrator`: the rows of the solver's table.
-pub(crate) const INTEGRATORS: [Named<IntegratorKind>; IntegratorKind::ALL.len()] = {
-    let mut rows = [word("", IntegratorKind::Explicit, ""); IntegratorKind::ALL.len()];
-    let mut index = 0;
-    while index < rows.len() {
-        let kind = IntegratorKind::ALL[index];
-        let entry = integrators::entry(kind);
-        rows[index] = word(entry.name, kind, entry.meaning);
-        index += 1;
-    }
-    rows
-};
+const fn integrator(kind: IntegratorKind) -> Named<IntegratorKind> {
+    let entry = integrators::entry(kind);
+    word(entry.name, kind, entry.meaning)
+}
+
+/// Values of `solver.integrator`.
+pub(crate) const INTEGRATORS: [Named<IntegratorKind>; 3] = [
+    integrator(IntegratorKind::Explicit),
+    integrator(IntegratorKind::Implicit),
+    integrator(IntegratorKind::Hybrid),
+];
+
+const fn model_kind(Model { kind, name, meaning, .. }: Model) -> Named<ModelKind> {
+    word(name, kind, meaning)
+}
 
 /// Values of `solver.model`.
-pub(crate) const MODEL_KINDS: [Named<ModelKind>; MODELS.len()] = {
-    let mut rows = [word("", ModelKind::Film, ""); MODELS.len()];
-    let mut index = 0;
-    while index < rows.len() {
-        let model = MODELS[index];
-        rows[index] = word(model.name, model.kind, model.meaning);
-        index += 1;
-    }
-    rows
-};
+pub(crate) const MODEL_KINDS: [Named<ModelKind>; 3] =
+    [model_kind(MODELS[0]), model_kind(MODELS[1]), model_kind(MODELS[2])];
 
 /// Values of `design.fit`.
 pub(crate) const FITS: [Named<Fit>; 3] = [

@@ -5,7 +5,7 @@ use super::symbol::Scale;
 /// Sign and digits as a whole number, and its power of ten. `None` with more than 38 digits, or when
 /// the exponent overflows.
 fn exact(number: &str) -> Option<(i128, i32)> {
-    let (mantissa, exponent) = split(number);
+    let (mantissa, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
     let mut exponent: i32 = exponent.parse().ok()?;
     let mut whole: i128 = 0;
     let mut after_point = false;
@@ -22,42 +22,21 @@ fn exact(number: &str) -> Option<(i128, i32)> {
     Some((if mantissa.starts_with('-') { -whole } else { whole }, exponent))
 }
 
-/// Texts of mantissa and exponent.
-fn split(number: &str) -> (&str, &str) {
-    number.split_once(['e', 'E']).unwrap_or((number, "0"))
-}
-
 fn float(whole: i128, exponent: i32) -> Option<f64> {
     format!("{whole}e{exponent}").parse().ok()
 }
 
 /// `number` × `scale`, rounded once if the scale is decimal.
 pub(super) fn scaled(number: &str, scale: &Scale) -> Option<f64> {
-    if scale.factor == 1 && scale.divisor == 1 {
-        // For a power of ten, only the exponent of the text changes.
-        let (mantissa, exponent) = split(number);
-        let moved = match exponent.parse::<i64>() {
-            Ok(exponent) => exponent.saturating_add(i64::from(scale.exponent)),
-            // With an exponent that overflows i64 the number is 0 or infinite in any unit.
-            Err(_) => return number.parse::<f64>().ok().map(|value| scale.apply_degrees(value)),
-        };
-        return format!("{mantissa}e{moved}")
-            .parse::<f64>()
-            .ok()
-            .map(|value| scale.apply_degrees(value));
-    }
     let product = exact(number).and_then(|(whole, exponent)| {
         float(whole.checked_mul(i128::from(scale.factor))?, exponent.checked_add(scale.exponent)?)
     });
-    let product = if let Some(product) = product {
-        product
-    } else {
-        let value: f64 = number.parse().ok()?;
-        let shift: f64 = format!("1e{}", scale.exponent).parse().ok()?;
-        value * scale.factor as f64 * shift
+    let product = match product {
+        Some(product) => product,
+        None => number.parse::<f64>().ok()? * scale.factor as f64 * float(1, scale.exponent)?,
     };
-    let quotient = if scale.divisor == 1 { product } else { product / scale.divisor as f64 };
-    Some(scale.apply_degrees(quotient))
+    // A division by 1 changes no bit.
+    Some(scale.apply_degrees(product / scale.divisor as f64))
 }
 
 /// `number` + `offset`, rounded once. The offset is a whole number and a power of ten.

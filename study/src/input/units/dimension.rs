@@ -7,47 +7,28 @@ pub type Powers = [i8; 6];
 const BASE: [&str; 6] = ["m", "kg", "s", "K", "rad", "B"];
 
 /// The dimensions a key can have.
+#[expect(missing_docs, reason = "the table below names them")]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Dimension {
-    /// A pure number.
     Number,
-    /// Length.
     Length,
-    /// Area.
     Area,
-    /// Volume.
     Volume,
-    /// Mass.
     Mass,
-    /// Time.
     Time,
-    /// Absolute temperature.
     Temperature,
-    /// Plane angle.
     Angle,
-    /// Pressure, stress, modulus.
     Pressure,
-    /// Mass per volume.
     Density,
-    /// Mass per time.
     MassFlowRate,
-    /// Length per time.
     Velocity,
-    /// Length per time squared.
     Acceleration,
-    /// Energy.
     Energy,
-    /// Per time.
     Frequency,
-    /// Angle per time.
     AngularVelocity,
-    /// Force.
     Force,
-    /// Heat per mass and temperature.
     SpecificHeat,
-    /// Heat per time, area and temperature.
     HeatTransfer,
-    /// Memory of a computer.
     Memory,
 }
 

@@ -136,9 +136,6 @@ fn symbol(name: &str) -> Option<Scale> {
 const MAX_UNIT_LENGTH: usize = 64;
 
 /// Reads a unit.
-///
-/// # Errors
-/// The problem in words.
 pub(super) fn unit(text: &str) -> Result<Scale, String> {
     let unknown = || format!("has an unknown unit {text:?}");
     if text.len() > MAX_UNIT_LENGTH {

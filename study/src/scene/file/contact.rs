@@ -78,9 +78,6 @@ pub(super) fn check_plates(film: &FilmScene, source: &Source) -> Result<(), Inpu
 const TOUCHING_DISTANCE: f64 = 1e-7;
 
 /// Whether the film touches itself at the start: contact cannot distinguish its sides then.
-///
-/// # Errors
-/// When the solver refuses the film.
 pub(super) fn touches_itself(film: &FilmScene) -> Result<bool, SceneError> {
     let (system, ..) = capsule::constants(film)?;
     let Some(model) = &system.contact else { return Ok(false) };

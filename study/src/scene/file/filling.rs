@@ -178,9 +178,6 @@ fn encloses_nothing(shape: &Shape) -> bool {
 }
 
 /// The enclosed volume, m³.
-///
-/// # Errors
-/// When it is zero, or negative because faces are wound inward.
 fn check_outward(shape: &Shape, source: &Source) -> Result<f64, InputError> {
     let positions = &shape.shell.positions;
     let volume = shape.shell.volume(|node| positions[node as usize]);

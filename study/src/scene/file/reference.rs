@@ -86,9 +86,6 @@ const REFERENCE: &str = "an OBJ file with the faces of positions in the same ord
                          all), or a list of them as [[x, y], [x, y], [x, y]] in m";
 
 /// Flat coordinates of the corners of one face, m.
-///
-/// # Errors
-/// The problem in words.
 fn inline(json: &Json) -> std::result::Result<Vec<Vector3<f64>>, String> {
     let KeyKind::Quantity(length) = FLAT else { unreachable!("a length") };
     let Json::List(corners) = json else { return Err(format!("is {}, not a list", json.kind())) };
@@ -107,9 +104,6 @@ fn inline(json: &Json) -> std::result::Result<Vec<Vector3<f64>>, String> {
 }
 
 /// The stress-free triangle in its own plane.
-///
-/// # Errors
-/// When it has no area.
 pub(super) fn flattened(
     corners: [Vector3<f64>; 3],
     face: &Face,

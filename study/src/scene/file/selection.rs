@@ -116,9 +116,6 @@ fn listed(object: &Object<'_>, shape: &Shape) -> Result<Vec<u32>, InputError> {
 }
 
 /// The node of a vertex by its number, 0 for the first of the file.
-///
-/// # Errors
-/// The problem in words.
 pub(super) fn vertex(json: &Json, shape: &Shape) -> Result<u32, String> {
     let number = number(json)?;
     let vertices = &shape.numbering.node;
@@ -130,9 +127,6 @@ pub(super) fn vertex(json: &Json, shape: &Shape) -> Result<u32, String> {
 }
 
 /// The element of a triangle by its number, 0 for the first of the file.
-///
-/// # Errors
-/// The problem in words.
 pub(super) fn triangle(json: &Json, shape: &Shape) -> Result<u32, String> {
     let number = number(json)?;
     let elements = &shape.numbering.element;

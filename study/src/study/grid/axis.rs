@@ -8,7 +8,7 @@ use crate::input::source::Source;
 use crate::input::value::Value;
 use crate::job::proportion::Proportion;
 use crate::platform::error::InputError;
-use crate::study::column::{self, Column, Section};
+use crate::study::column::{self, Column};
 use crate::study::range;
 use crate::study::search::{Search, is_search};
 
@@ -46,7 +46,7 @@ impl Grid {
         let mut lists: Vec<Vec<Value>> = Vec::new();
         for (name, value) in members {
             let path = format!("{path}.{name}");
-            let column = self.column(name, &path, value, Section::Grid, context)?;
+            let column = self.column(name, &path, value, context)?;
             if let (true, [_]) = (is_search(value), members) {
                 return self.read_search(column, value, &path, context);
             }
@@ -114,11 +114,10 @@ impl Grid {
         name: &str,
         path: &str,
         value: &Json,
-        section: Section,
         context: Context<'_>,
     ) -> Result<usize, InputError> {
         let Context { settings, source, .. } = context;
-        let column = column::find(name, path, value, settings, section, source)?;
+        let column = column::find(name, path, value, settings, source)?;
         if self.columns.contains(&column) {
             let problem = format!("varies {}, which another axis varies already", column.name);
             return Err(source.error(path, value, problem, "each key once"));

@@ -4,7 +4,7 @@ mod axis;
 mod points;
 
 use super::REPLICATES;
-use super::column::{Column, Section};
+use super::column::Column;
 use super::filter::Filter;
 use super::search::{Search, is_search};
 use crate::input::json::Json;
@@ -99,7 +99,7 @@ impl Grid {
                 "filter" => filter = Some(value),
                 _ => {
                     let path = format!("grid.{name}");
-                    let column = grid.column(name, &path, value, Section::Grid, context)?;
+                    let column = grid.column(name, &path, value, context)?;
                     if is_search(value) {
                         grid.read_search(column, value, &path, context)?;
                         continue;

@@ -8,7 +8,7 @@ use crate::input::keys;
 use crate::input::object::{list, members};
 use crate::input::value::Value;
 use crate::platform::error::InputError;
-use crate::study::column::{self, Section};
+use crate::study::column;
 use crate::study::filter::Filter;
 
 impl Grid {
@@ -25,7 +25,7 @@ impl Grid {
             let mut values: Vec<(usize, Value)> = Vec::new();
             for (name, json) in members(point, &path, source, allowed)? {
                 let path = format!("{path}.{name}");
-                let found = column::find(name, &path, json, settings, Section::Grid, source)?;
+                let found = column::find(name, &path, json, settings, source)?;
                 let value = value(&found, json, &path, context)?;
                 let known = self.columns.iter().position(|known| *known == found);
                 let column = known.unwrap_or_else(|| {
