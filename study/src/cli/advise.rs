@@ -21,7 +21,7 @@ use crate::platform::nearest::did_you_mean;
 use crate::study::{Study, features};
 use billow_solver::scene::ModelKind;
 
-/// Relative error that measures must keep where neither the command nor the study gives one.
+/// Relative error that measures must keep where the command gives none.
 const DEFAULT_TOLERANCE: &str = "5 %";
 
 /// Arguments of `billow advise`.
@@ -29,12 +29,10 @@ const DEFAULT_TOLERANCE: &str = "5 %";
 pub struct Args {
     /// The study file.
     study: PathBuf,
-    /// Relative error that each measure must keep, as in 0.02 or "2 %" [default: what `accuracy` of the study asks;
-    /// without it 5 %].
+    /// Relative error that each measure must keep, as in 0.02 or "2 %" [default: 5 %].
     #[arg(long, value_name = "FRACTION")]
     tolerance: Option<String>,
-    /// The measures that must keep it, comma-separated [default: those of `accuracy`; without it, or with
-    /// `--tolerance`, all but `peak_vz`].
+    /// The measures that must keep it, comma-separated [default: all but `peak_vz`].
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     measures: Vec<String>,
     #[command(flatten)]
@@ -51,7 +49,7 @@ pub struct Args {
 /// A study that is not valid, or that the table of mesh errors does not cover; an unknown measure.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let study = Study::load(&args.study, &args.set.set)?;
-    let tolerances = tolerances(args, &study)?;
+    let tolerances = tolerances(args)?;
     let scenes: Vec<_> = study.points().iter().filter_map(features).collect();
     let table = MeshErrors::shipped();
     let choices = choices(table, &scenes).map_err(|gap| {
@@ -104,12 +102,7 @@ fn hint(study: &Study) -> String {
 }
 
 /// The tolerance of each promised measure.
-fn tolerances(args: &Args, study: &Study) -> Result<Tolerances> {
-    if let (None, [], Some(tolerances)) =
-        (&args.tolerance, args.measures.as_slice(), study.tolerances())
-    {
-        return Ok(tolerances);
-    }
+fn tolerances(args: &Args) -> Result<Tolerances> {
     let text = args.tolerance.as_deref().unwrap_or(DEFAULT_TOLERANCE);
     let tolerance = relative_error(text).ok_or_else(|| {
         Error::invalid_option("--tolerance", text, "not a relative error", RELATIVE_ERROR, "")

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use billow_solver::integrators::{self, Refusal};
 use billow_solver::scene::ModelKind;
 
-use crate::accuracy::{MeshErrors, Method, Tolerances, all_but_peak_vz, choice};
+use crate::accuracy::{MeshErrors, Method, all_but_peak_vz, choice};
 use crate::input::keys::numerical::{MESH_PARAMETER, SEED};
 use crate::input::keys::{MODELS, Model};
 use crate::input::value::{Value, brief_number};
@@ -34,16 +34,7 @@ pub fn print(study: &Study) {
 fn of_points(study: &Study) -> Vec<String> {
     let has = |model| study.points().iter().any(|point| point.job.scene.solver.model == model);
     let mut lines: Vec<String> = Vec::new();
-    if let Some(meshes) = study.chosen_meshes() {
-        let method = Method { model: ModelKind::Film, meshes: meshes.to_vec() };
-        let how = "the cheapest that keeps its errors at every point";
-        // A newer table may not cover what an older one did.
-        let errors = study.tolerances().and_then(|asked| errors(study, &method, &asked).ok());
-        let errors = errors.unwrap_or_default();
-        lines.push(format!("note: accuracy chooses {}, {how}{errors}", method.name()));
-    } else {
-        lines.extend(of_meshes(study));
-    }
+    lines.extend(of_meshes(study));
     let subdivisions = study.key(MESH_PARAMETER).filter(|_| !study.meshes().is_empty());
     if let Some(given) = subdivisions.filter(|key| key.value != key.key.default_value()) {
         lines.push(format!("note: solver.meshes replaces design.subdivisions {}", given.value));
@@ -86,25 +77,19 @@ fn of_points(study: &Study) -> Vec<String> {
     lines
 }
 
-/// The errors of a method, as the table of mesh errors has them, of the measures with a tolerance, and its cost.
-///
-/// # Errors
-/// Why the table does not cover the study.
-fn errors(study: &Study, method: &Method, tolerances: &Tolerances) -> Result<String, String> {
-    let scenes: Vec<_> = study.points().iter().filter_map(features).collect();
-    let choice = choice(MeshErrors::shipped(), method.clone(), &scenes)?;
-    let errors = choice.errors_text(tolerances);
-    Ok(format!(": {errors}; cost {:.1} % of n 24", 100.0 * choice.cost))
-}
-
 /// The errors of values from several meshes, or why there are none.
 fn of_meshes(study: &Study) -> Option<String> {
     let meshes = study.meshes();
     let [.., next, finest] = meshes[..] else { return None };
     let method = Method { model: ModelKind::Film, meshes: vec![next, finest] };
-    let all = all_but_peak_vz(Some(0.0));
-    Some(match errors(study, &method, &all) {
-        Ok(errors) => format!("note: solver.meshes gives the errors of {}{errors}", method.name()),
+    let scenes: Vec<_> = study.points().iter().filter_map(features).collect();
+    let name = method.name();
+    Some(match choice(MeshErrors::shipped(), method, &scenes) {
+        Ok(choice) => format!(
+            "note: solver.meshes gives the errors of {name}: {}; cost {:.1} % of n 24",
+            choice.errors_text(&all_but_peak_vz(Some(0.0))),
+            100.0 * choice.cost
+        ),
         Err(gap) if study.meshes().len() == 2 => {
             format!("note: two meshes give no errors here ({gap}); three meshes do")
         }

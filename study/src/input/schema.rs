@@ -120,17 +120,11 @@ fn extend(schema: &mut Json, more: Json) {
 /// What a key with more than one value may hold, beside the keys of its object. A keyword of one type, as
 /// `minimum`, concerns no value of another type.
 fn form(file: FileKind, path: &str) -> Json {
-    let error = json!({"type": ["number", "string"], "exclusiveMinimum": 0, "exclusiveMaximum": 1});
-    let meshes = |least: u32| {
-        let mesh = json!({"type": "integer", "minimum": 1});
-        json!({"type": "array", "items": mesh, "minItems": least, "maxItems": 3, "uniqueItems": true})
-    };
     match path {
-        "accuracy" => json!({
-            "type": ["number", "string", "object"], "exclusiveMinimum": 0, "exclusiveMaximum": 1,
-            "properties": {"meshes": meshes(1)}, "additionalProperties": error, "minProperties": 1,
+        "solver.meshes" => json!({
+            "type": "array", "items": {"type": "integer", "minimum": 1}, "minItems": 2,
+            "maxItems": 3, "uniqueItems": true,
         }),
-        "solver.meshes" => meshes(2),
         "solver.stepping" => json!({"maxProperties": 1}),
         "strategies" => json!({"type": "object", "additionalProperties": false}),
         "strategies.<name>.inflow" => json!({"default": [{}]}),

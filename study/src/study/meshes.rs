@@ -3,13 +3,11 @@
 //! The meshes are an axis that varies fastest, as replicates do. They must be meshes of the table of mesh errors,
 //! which has the weights of the extrapolation.
 
-use std::ops::RangeInclusive;
-
-use billow_solver::scene::ModelKind;
+use billow_solver::scene::{ModelKind, Scene};
 
 use super::column::Column;
 use super::grid::{Axis, AxisKind, Context, Grid};
-use crate::accuracy::MeshErrors;
+use crate::accuracy::{Features, MeshErrors};
 use crate::input::json::Json;
 use crate::input::keys::{self, KEYS, position, short_name};
 use crate::input::object::list;
@@ -22,8 +20,6 @@ use crate::platform::error::InputError;
 const MESHES: &str = "solver.meshes";
 /// The key that the meshes vary.
 const SUBDIVISIONS: usize = position(KEYS, "design.subdivisions");
-/// Number of meshes.
-const COUNT: RangeInclusive<usize> = 2..=3;
 
 impl Grid {
     /// Reads the meshes, as the last axis.
@@ -34,7 +30,7 @@ impl Grid {
     ) -> Result<(), InputError> {
         let Some(json) = json else { return Ok(()) };
         let source = context.source;
-        let meshes = read_list(json, MESHES, COUNT, source)?;
+        let meshes = read_list(json, source)?;
         let refuse = |problem: &str| {
             source.error(MESHES, json, problem, "a study in which nothing else varies the mesh")
         };
@@ -69,35 +65,30 @@ impl Grid {
 }
 
 /// Reads a list of meshes of the table of mesh errors.
-pub(super) fn read_list(
-    json: &Json,
-    path: &str,
-    count: RangeInclusive<usize>,
-    source: &Source,
-) -> Result<Vec<u32>, InputError> {
+fn read_list(json: &Json, source: &Source) -> Result<Vec<u32>, InputError> {
     let known = MeshErrors::shipped().meshes();
     let names = known.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-    let allowed = format!(
-        "{} to {} of {names}, the coarsest first, as in [4, 8]",
-        count.start(),
-        count.end()
-    );
-    let items = list(json, path, source, &allowed)?;
+    let allowed = format!("2 to 3 of {names}, the coarsest first, as in [4, 8]");
     let whole = |item: &Json| match item {
         Json::Integer(n) => u32::try_from(*n).ok().filter(|n| known.contains(n)),
         _ => None,
     };
-    let meshes: Option<Vec<u32>> = items.iter().map(whole).collect();
+    let meshes: Option<Vec<u32>> =
+        list(json, MESHES, source, &allowed)?.iter().map(whole).collect();
     let problem = match meshes {
-        None => "has a mesh that the table of mesh errors has not".to_owned(),
-        Some(meshes) if count.contains(&meshes.len()) && meshes.is_sorted_by(|a, b| a < b) => {
+        None => "has a mesh that the table of mesh errors has not",
+        Some(meshes) if matches!(meshes.len(), 2 | 3) && meshes.is_sorted_by(|a, b| a < b) => {
             return Ok(meshes);
         }
-        Some(_) => {
-            format!("is not {} to {} meshes in ascending order", count.start(), count.end())
-        }
+        Some(_) => "is not 2 to 3 meshes in ascending order",
     };
-    Err(source.error(path, json, problem, allowed))
+    Err(source.error(MESHES, json, problem, allowed))
+}
+
+/// The scene of a point with the features on which mesh errors depend; `None` for an infeasible point.
+pub(crate) fn features(point: &Point) -> Option<(&Scene, Features)> {
+    let (scene, solved) = (&*point.job.scene, point.solved?);
+    Some((scene, Features::of(scene, solved.top_radius, solved.height)))
 }
 
 /// Refuses models without a mesh: their runs on each would be equal.

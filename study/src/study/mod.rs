@@ -6,7 +6,6 @@
 //! ```
 //! Every error of a study is found here, before anything runs.
 
-mod accuracy;
 mod column;
 mod expand;
 mod filter;
@@ -28,7 +27,6 @@ mod units;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use crate::accuracy::Tolerances;
 use crate::input::json::Json;
 use crate::input::keys::STUDY;
 use crate::input::overrides;
@@ -41,9 +39,8 @@ use crate::job::limits::JobLimits;
 use crate::job::point::{Point, Searched};
 use crate::job::result_limit::ResultLimit;
 use crate::platform::error::{InputError, Result as BillowResult};
-pub(crate) use accuracy::features;
-use accuracy::{ACCURACY, Accuracy};
 use grid::{Context, Grid};
+pub(crate) use meshes::features;
 pub use parameters::{StudyKey, Zipped};
 pub use search::{Border, Criterion, Level, SearchResult};
 
@@ -81,8 +78,6 @@ pub struct Study {
     grid: Grid,
     /// What its results must meet to be safe.
     result_limits: Vec<ResultLimit>,
-    /// The errors that its results must keep.
-    accuracy: Option<Accuracy>,
     /// Its points in plan order: those of the product that the filter keeps, the first axis slowest, then
     /// the single points, which it does not concern.
     points: Vec<Point>,
@@ -147,30 +142,14 @@ impl Study {
             return Err(InputError { hint: format!("billow solve {file}"), ..error });
         }
         let notes = overrides::apply(&mut tree, sets, &STUDY, &mut source)?;
-        let mut settings = Settings::of_study(&tree, &source)?;
+        let settings = Settings::of_study(&tree, &source)?;
         let result_limits = result_limits::read(tree.get(LIMITS), &source)?;
         let context =
             Context { settings: &settings, limits: &result_limits, source: &source, max_points };
-        let mut grid = Grid::read(&tree, context)?;
+        let grid = Grid::read(&tree, context)?;
         grid.refuse_varied(&source)?;
         let units = units::read(&tree, &settings, &source)?;
-        let mut accuracy = Accuracy::read(tree.get(ACCURACY), &source)?;
-        let (mut points, mut filtered) = expand::points(&settings, &grid, &source, max_points)?;
-        let chooses = accuracy.as_mut().filter(|accuracy| accuracy.meshes.is_empty());
-        if let Some(accuracy) = chooses {
-            accuracy::refuse_given_mesh(&tree, &source)?;
-            accuracy.choose(&points, &source)?;
-            accuracy::set_meshes(&mut tree, &accuracy.meshes);
-            settings = Settings::of_study(&tree, &source)?;
-            let context = Context {
-                settings: &settings,
-                limits: &result_limits,
-                source: &source,
-                max_points,
-            };
-            grid = Grid::read(&tree, context)?;
-            (points, filtered) = expand::points(&settings, &grid, &source, max_points)?;
-        }
+        let (points, filtered) = expand::points(&settings, &grid, &source, max_points)?;
         meshes::refuse_other_models(&grid, &points, &source)?;
         let name = study_name(&settings, stem, &source)?;
         let (question, warnings) = (question(&settings), source.warnings());
@@ -183,7 +162,6 @@ impl Study {
             settings,
             grid,
             result_limits,
-            accuracy,
             points,
             filtered,
         })
@@ -202,17 +180,6 @@ impl Study {
     /// The meshes from which the values of each point are extrapolated, coarsest first; empty without any.
     pub fn meshes(&self) -> Vec<u32> {
         self.grid.meshes()
-    }
-
-    /// The meshes that `accuracy` chose, coarsest first; `None` without it.
-    pub(crate) fn chosen_meshes(&self) -> Option<&[u32]> {
-        let meshes = self.accuracy.as_ref().map(|accuracy| accuracy.meshes.as_slice());
-        meshes.filter(|meshes| !meshes.is_empty())
-    }
-
-    /// Largest relative errors that its results must keep; `None` without `accuracy`.
-    pub(crate) fn tolerances(&self) -> Option<Tolerances> {
-        Some(self.accuracy.as_ref()?.tolerances)
     }
 
     /// Number of runs of each point: 1 without replicates.
@@ -259,9 +226,6 @@ impl Study {
         }
         if !self.result_limits.is_empty() {
             json.set(LIMITS, result_limits::to_json(&self.result_limits));
-        }
-        if let Some(accuracy) = &self.accuracy {
-            json.set(ACCURACY, accuracy.to_json());
         }
         let replicates = self.grid.resolved_replicates();
         if !replicates.is_empty() {

@@ -1,7 +1,6 @@
 //! The units in which a study's quantities are shown: those of the section `units`, and those that the
 //! file writes for a key, first under `grid`, then in its section; for a measure those of its limit.
 
-use super::accuracy::ACCURACY;
 use super::column;
 use super::{JOB_LIMITS, LIMITS, REPLICATES, UNITS};
 use crate::input::json::Json;
@@ -17,7 +16,7 @@ use crate::platform::nearest::or_nearest;
 /// Members of a range and of a search that hold values of the key.
 const VALUE_MEMBERS: [&str; 4] = ["from", "to", "step", "bisect"];
 /// Sections in which no key of the study has its value.
-const WITHOUT_VALUES: [&str; 6] = ["grid", ACCURACY, UNITS, JOB_LIMITS, LIMITS, REPLICATES];
+const WITHOUT_VALUES: [&str; 5] = ["grid", UNITS, JOB_LIMITS, LIMITS, REPLICATES];
 /// What the section `units` must look like, for errors.
 const ALLOWED: &str =
     "a unit of this quantity, as in {\"mass_flow_rate\": \"g/s\", \"t_90_z_rim\": \"ms\"}";

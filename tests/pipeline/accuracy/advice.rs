@@ -99,17 +99,3 @@ fn a_study_of_the_piston_gets_advice_too() {
     );
     assert!(text.contains("billow compare STUDY --by model --base film"), "{text}");
 }
-
-/// Without options the advice is for the accuracy that the study asks; its points are counted, not its runs.
-#[test]
-fn advice_reads_the_accuracy_of_the_study() {
-    let study = film(&json!({"accuracy": {"t_50_z_rim": 0.04}, "grid": {"N": [6, 8]}}));
-    let (_, text) = advice(&study, &[]);
-    assert!(text.contains("asked: t_50_z_rim 4 %") && text.contains("2 points; "), "{text}");
-    assert!(text.contains("times the cost of now") && text.contains("1.0 times"), "{text}");
-    let (_, text) = advice(&study, &["--tolerance", "10 %"]);
-    assert!(text.contains("t_90_z_rim 10 %") && !text.contains("peak_vz 10 %"), "{text}");
-    let plan = stderr(&TestFolder::new(&study).run(&["plan", "grid.json"]));
-    assert!(plan.contains("note: accuracy chooses film, n ") && plan.contains(": t_50_z_rim "));
-    assert!(plan.contains(" % of n 24"), "{plan}");
-}

@@ -1,11 +1,11 @@
-//! Several meshes of one point, and the meshes that an accuracy chooses.
+//! Several meshes of one point.
 
 use std::fs;
 
 use serde_json::{Value, json};
 
 use super::{film, said};
-use crate::support::{TestFolder, json_of, stderr};
+use crate::support::{TestFolder, stderr};
 
 /// A study on two meshes has one row, with values between which and the finest run the table of mesh errors stands.
 #[test]
@@ -84,49 +84,6 @@ fn meshes_that_cannot_be_extrapolated_are_refused() {
     assert!(refused(search).contains("a search judges single runs"));
     let models = json!({"solver": {"meshes": [4, 8]}, "grid": {"model": ["film", "piston"]}});
     assert!(refused(models).contains("the model piston has none"));
-}
-
-#[test]
-fn an_accuracy_chooses_the_cheapest_meshes_that_keep_it() {
-    let planned = |tolerance: Value| {
-        let folder = TestFolder::new(&film(&json!({"accuracy": tolerance})));
-        let rows = json_of(&folder, &["plan", "grid.json"]);
-        let rows = rows.as_array().unwrap().clone();
-        let mesh = |row: &Value| row["subdivisions"].as_i64();
-        rows.iter().map(mesh).collect::<Vec<_>>()
-    };
-    let loose = planned(json!({"final_volume": "15 %"}));
-    let strict = planned(json!({"final_volume": 0.03}));
-    let cost = |meshes: &[Option<i64>]| meshes.iter().flatten().map(|n| n * n * n).sum::<i64>();
-    // One mesh is no axis.
-    assert!(loose.len() == 1, "{loose:?}");
-    assert!(strict.len() == 2 && cost(&strict) > 0 || strict.len() == 1, "{strict:?}");
-    let refused = |more: Value| {
-        let output = TestFolder::new(&film(&more)).run(&["plan", "grid.json"]);
-        assert_eq!(output.status.code(), Some(2));
-        stderr(&output)
-    };
-    let message = refused(json!({"accuracy": {"final_volume": 1e-6}}));
-    assert!(message.contains("is kept by no mesh") && message.contains("or more"), "{message}");
-    assert!(refused(json!({"accuracy": {"t_90_z_rm": 0.02}})).contains("did you mean t_90_z_rim?"));
-    let given = json!({"accuracy": {"t_90_z_rim": 0.1}, "design": {"subdivisions": 4}});
-    assert!(refused(given).contains("is given beside accuracy"));
-    let soft = json!({"accuracy": {"t_90_z_rim": 0.1}, "film": {"youngs_modulus": "1 GPa"}});
-    assert!(refused(soft).contains("film.youngs_modulus"));
-}
-
-#[test]
-fn the_choice_of_an_accuracy_stands_in_the_stored_study() {
-    let mut study = film(&json!({"accuracy": {"peak_kinetic_energy": 0.3}}));
-    study["solver"]["end_time"] = json!("10 ms");
-    let folder = TestFolder::finished(&study);
-    let text = fs::read_to_string(folder.results().join("study.json")).unwrap();
-    let stored: Value = serde_json::from_str(&text).unwrap();
-    let meshes = stored["accuracy"]["meshes"].as_array().unwrap();
-    assert_eq!(meshes.len(), 1, "{meshes:?}");
-    assert_eq!(stored["design"]["subdivisions"], meshes[0]);
-    let again = folder.run(&["run", "grid.json"]);
-    assert!(said(&again).contains("all 1 jobs are finished"), "{}", said(&again));
 }
 
 /// A chart of several meshes shows what the table has: extrapolated values, and outcomes and histories of the finest mesh.

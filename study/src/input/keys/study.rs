@@ -44,12 +44,6 @@ pub(crate) const STRUCTURED: &[(&str, &str)] = &[
          from release to the end.",
     ),
     (
-        "accuracy",
-        "Relative errors that the results must keep, as in {\"t_90_z_rim\": 0.02}: t_50_z_rim, t_90_z_rim, peak_vz, \
-         peak_kinetic_energy, final_z_rim, final_volume; one number is for all but peak_vz. The cheapest mesh, or two \
-         (solver.meshes), follow from the table of mesh errors; study.json adds `meshes`, the choice.",
-    ),
-    (
         "solver.meshes",
         "Meshes (design.subdivisions) on which each point runs, two or three, as in [4, 8]. Its row has the promised \
          measures extrapolated from the two finest, with their error; --runs shows the runs.",
