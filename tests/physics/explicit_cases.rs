@@ -1,5 +1,5 @@
-//! Film in motion: moving supports, free fall, a vibrating sheet, order in the step, failures. Momentum, the stable
-//! step and damping are reference cases of `billow-checks validate`.
+//! Film in motion: moving supports, free fall, a vibrating sheet, order in the step, failures. Momentum and damping are
+//! reference cases of `billow-checks validate`.
 
 use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{crossed_grid, icosphere, nodes_where, sheet};

@@ -1,5 +1,5 @@
-//! Invalid films, film of several moduli, and the factors of damping. Film forces against their energies, rigid motions, the
-//! patch test and the stable step are reference cases of `billow-checks validate`.
+//! Invalid films, film of several moduli, and the factors of damping. Rigid motions and momentum are reference cases of
+//! `billow-checks validate`, the stable step is a map of `billow-checks stability`.
 
 use billow_solver::geometry::shapes::sheet;
 use billow_solver::geometry::shell::Shell;

@@ -10,9 +10,6 @@ use billow_study::platform::files::{Disk, Files, disk_error};
 use billow_study::platform::nearest::did_you_mean;
 
 /// The entries of a table that an option names, in the order of the table; all without names.
-///
-/// # Errors
-/// A name that no entry has.
 pub fn chosen<'a, T>(
     option: &str,
     names: &[String],
@@ -32,9 +29,6 @@ pub fn chosen<'a, T>(
 }
 
 /// Writes pictures (name, SVG) as SVG and PNG to the folder `charts` of results. Lists their paths if asked.
-///
-/// # Errors
-/// A picture that cannot be written.
 pub fn draw(
     results: &Path,
     pictures: impl IntoIterator<Item = (String, String)>,

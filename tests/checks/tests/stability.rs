@@ -40,6 +40,8 @@ fn the_limit_of_a_linear_sheet_is_that_of_theory_and_cells_are_kept() {
         .find_map(|line| line.strip_suffix(" of 2/omega_max")?.rsplit(' ').next()?.parse().ok())
         .unwrap();
     assert!((of_theory - 1.0).abs() < 0.01, "{of_theory}");
+    // The element bound, a CFL number of 1, lies below it.
+    assert!(printed.contains("border explicit: step 1.3"), "{printed}");
     for name in ["step.svg", "step.png"] {
         assert!(folder.path().join("out/charts").join(name).is_file(), "{name}");
     }

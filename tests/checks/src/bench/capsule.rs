@@ -35,9 +35,6 @@ pub(super) struct Capsule {
 
 impl Capsule {
     /// The capsule on this mesh with these overrides of its scene.
-    ///
-    /// # Errors
-    /// If the scene is invalid.
     pub(super) fn new(
         subdivisions: u32,
         given: &[String],
@@ -82,9 +79,6 @@ impl Observer for Until {
 
 impl<'a> Progress<'a> {
     /// At time 0.
-    ///
-    /// # Errors
-    /// If the film is invalid.
     pub(super) fn of(capsule: &'a Capsule) -> Result<Self> {
         let failed = |error| Error::JobsFailed(format!("n {}: {error}", capsule.subdivisions));
         let scene = &capsule.scene;
@@ -93,9 +87,6 @@ impl<'a> Progress<'a> {
     }
 
     /// Runs to a time of a sample, s.
-    ///
-    /// # Errors
-    /// A failure of the run.
     pub(super) fn run_to(&mut self, time: f64) -> Result<()> {
         // Samples are multiples of the interval; half an interval less avoids rounding errors.
         let timeline = &self.capsule.timeline;

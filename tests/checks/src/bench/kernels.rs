@@ -22,9 +22,6 @@ const REPEATS: u32 = 7;
 
 /// Times the kernels on a mesh: the whole step without contact (`step`); and positions and forces of the film alone
 /// (`membrane`), while it moves at constant speed.
-///
-/// # Errors
-/// A failure of the run.
 pub(super) fn measure(capsule: &Capsule, selected: InstructionSet) -> Result<Vec<Row>> {
     let capsule = capsule.without_contact();
     // At this time part of the film is taut, part wrinkled, part slack.

@@ -87,9 +87,6 @@ impl Args {
 }
 
 /// Runs `billow-checks bench`. A signal ends it without figures.
-///
-/// # Errors
-/// A run that stops before its end.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let set = instruction_set::selected()?;
     let mut machine = machine::row(set);

@@ -24,9 +24,6 @@ const STEPS: [u64; 2] = [500, 200];
 const LARGE: usize = 20_000;
 
 /// Times the stages from a state of this name; the costs are ns per element and step.
-///
-/// # Errors
-/// A failure of the run.
 pub(super) fn measure(capsule: &Capsule, name: &str, run: &FilmRun) -> Result<Row> {
     let elements = run.elements();
     let steps = STEPS[usize::from(elements > LARGE)];
@@ -93,9 +90,6 @@ impl Stopwatch for Clock {
 }
 
 /// Takes a number of steps along a timeline, with the same interval ends as a run.
-///
-/// # Errors
-/// A failure of the run.
 pub(super) fn take_steps(
     film: &mut FilmSimulation,
     timeline: &Timeline,

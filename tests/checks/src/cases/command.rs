@@ -4,7 +4,7 @@ use std::io::Write;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use billow_study::cli::options::{OutputOptions, QuietOption, ThreadsOption};
-use billow_study::cli::print::{count, duration, print_rows};
+use billow_study::cli::print::print_rows;
 use billow_study::cli::{Format, instruction_set};
 use billow_study::input::value::Value;
 use billow_study::platform::error::{Error, Result};
@@ -18,10 +18,10 @@ pub struct Args {
     /// Run only this case; can be repeated.
     #[arg(long = "case", value_name = "NAME")]
     cases: Vec<String>,
-    /// Skip the long cases. The first line on stderr estimates the time.
+    /// Skip the long cases.
     #[arg(long)]
     quick: bool,
-    /// List the cases, about how long each takes and what it compares; run nothing.
+    /// List the cases and what each compares; run nothing.
     #[arg(long)]
     list: bool,
     #[command(flatten)]
@@ -33,9 +33,6 @@ pub struct Args {
 }
 
 /// Runs `billow-checks validate`.
-///
-/// # Errors
-/// An unknown case; a case that is out of tolerance.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let chosen = chosen("--case", &args.cases, CASES, |case| case.name)?;
     if args.list {
@@ -50,11 +47,6 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let (skipped, cases): (Vec<&Case>, Vec<&Case>) = chosen.into_iter().partition(skip);
     let rig = Rig { instruction_set: instruction_set::selected()?, ..Rig::default() };
     let pool = args.threads.pool()?;
-    let (total, threads) = (cases.len(), pool.current_num_threads());
-    let longest = cases.iter().map(|case| case.seconds).fold(0.0, f64::max);
-    let shared = cases.iter().map(|case| case.seconds).sum::<f64>() / threads as f64;
-    let (time, threads) = (duration(shared.max(longest).ceil()), count(threads, "thread"));
-    note(format!("{}, about {time} with {threads} on an idle machine", count(total, "case")));
     if !skipped.is_empty() {
         let names: Vec<&str> = skipped.iter().map(|case| case.name).collect();
         note(format!("skipped by --quick: {}", names.join(", ")));
@@ -63,16 +55,18 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let judged = run_all(&pool, &cases, &rig, &|judged| {
         let number = ended.fetch_add(1, Ordering::Relaxed) + 1;
         let verdict = if judged.pass() { "in tolerance" } else { "OUT OF TOLERANCE" };
-        note(format!("{number}/{total} {}: {verdict}, {:.1} s", judged.name, judged.seconds));
+        note(format!(
+            "{number}/{} {}: {verdict}, {:.1} s",
+            cases.len(),
+            judged.name,
+            judged.seconds
+        ));
     });
     print(&judged, args.output.format(), out)?;
     verdict(&judged)
 }
 
 /// The error of the command.
-///
-/// # Errors
-/// When a case is out of tolerance.
 pub fn verdict(judged: &[Judged]) -> Result<()> {
     let outside = judged.iter().filter(|judged| !judged.pass());
     let outside: Vec<&str> = outside.map(|judged| judged.name).collect();
@@ -87,16 +81,13 @@ pub fn verdict(judged: &[Judged]) -> Result<()> {
 fn list(cases: &[&Case], format: Format, out: &mut dyn Write) -> Result<()> {
     let row = |case: &&Case| -> Vec<Value> {
         let tier = if case.tier == Tier::Quick { "quick" } else { "long" };
-        vec![case.name.into(), tier.into(), case.seconds.into(), case.compares.into()]
+        vec![case.name.into(), tier.into(), case.compares.into()]
     };
     let rows: Vec<Vec<Value>> = cases.iter().map(row).collect();
-    print_rows(&["case", "tier", "seconds", "compares"], &rows, format, out)
+    print_rows(&["case", "tier", "compares"], &rows, format, out)
 }
 
 /// Prints one row per quantity of the cases. `seconds` is the time of the whole case.
-///
-/// # Errors
-/// When the output cannot be written.
 pub fn print(judged: &[Judged], format: Format, out: &mut dyn Write) -> Result<()> {
     let table = format == Format::Table;
     let number = |value: f64| Value::from(Some(value).filter(|value| value.is_finite()));

@@ -23,9 +23,6 @@ use super::row::worse;
 use super::{Outcome, Rig, Row};
 
 /// The run of a stowed capsule with this contact.
-///
-/// # Errors
-/// What is invalid in the scene.
 pub fn stowed(rig: &Rig, scene: &Scene, contact: FilmContact) -> Result<FilmRun, String> {
     FilmRun::from_scene(rig.instruction_set, scene, DEFAULT_CFL, Some(contact))
         .map_err(|e| e.to_string())

@@ -59,9 +59,6 @@ pub struct RunRecord {
 }
 
 /// Advances film to `end` (s) and records it at this number of samples.
-///
-/// # Errors
-/// A failure; a passage is one.
 pub fn run_recorded(
     film: &mut FilmSimulation,
     end: f64,

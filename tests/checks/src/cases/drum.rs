@@ -83,9 +83,6 @@ pub fn drum_modes() -> Vec<DrumMode> {
 
 /// The drum, a disc under equal biaxial tension with its rim held, in a mode on a mesh of rings, with an integrator at
 /// a CFL number and samples a period: its frequency, Hz, and the film after it.
-///
-/// # Errors
-/// A failure of the run.
 pub fn drum(
     rig: &Rig,
     mode: &DrumMode,

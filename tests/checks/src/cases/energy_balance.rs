@@ -1,20 +1,15 @@
-//! Energy balances: the paper's capsule without contact, and a sphere with every term of the
-//! equations.
+//! Energy balance of a sphere with every term of the equations.
 //!
 //! ```text
 //! residual = |Δ(kinetic + stored) + lost + numerical + damping − external works| / (peak kinetic + Σ|external works|)
 //! ```
 
 use billow_solver::geometry::shapes::icosphere;
-use billow_solver::models::film::FilmRun;
-use billow_solver::models::run::{self, Unobserved};
 use billow_solver::output::ledger::{GasBalance, gas_residuals, residuals};
-use billow_solver::output::outcome::Stop;
-use billow_solver::scene::DEFAULT_CFL;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::inflow::Inflow;
-use billow_solver::scene::paper::{self, free_film, nitrogen_supply};
-use billow_solver::scene::timeline::{Phase, Timeline};
+use billow_solver::scene::paper::{free_film, nitrogen_supply};
+use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply, HeatTransfer};
 use nalgebra::Vector3;
 
@@ -22,28 +17,6 @@ use super::reference::number;
 use super::rig::advance;
 use super::row::worse;
 use super::{Outcome, Rig, Row};
-
-/// The paper's capsule, deployed without contact for 0.3 s.
-pub(super) fn capsule_ledger(rig: &Rig) -> Outcome {
-    let scene = paper::capsule(5, 0.3);
-    let mut run = FilmRun::from_scene(rig.instruction_set, &scene, DEFAULT_CFL, None)
-        .map_err(|e| e.to_string())?;
-    run.film = rig.faulty(run.film);
-    let deployment = run::run(&mut run, &Timeline::new(&scene), &mut Unobserved);
-    if deployment.stop != Stop::Done {
-        return Err(format!("stopped: {:?}", deployment.stop));
-    }
-    let audit = &deployment.audit;
-    let numerical = format!(
-        "numerical dissipation over gas work {:.3}, material loss {:.3}",
-        audit.numerical_fraction, audit.material_loss_fraction
-    );
-    Ok(vec![
-        Row::at_most("film energy residual", audit.ledger_residual, number("ledger/band"))
-            .with_note(&numerical),
-        Row::at_most("gas energy residual", audit.gas_residual, number("ledger/gas_band")),
-    ])
-}
 
 /// A damped sphere that is thrown upward in air, filled, leaks, exchanges heat and has mass damping:
 /// every term at once.

@@ -281,9 +281,6 @@ fn injected_start() -> Plate {
 
 /// The plate driven by an inflow, from the closed form at 1 ms to 50 ms, by film with an integrator at a CFL number; and
 /// its height, m.
-///
-/// # Errors
-/// A failure of the run.
 pub fn injected(
     rig: &Rig,
     integrator: IntegratorKind,
@@ -300,9 +297,6 @@ pub fn injected(
 }
 
 /// The same by the model piston: its steps, and its height, m.
-///
-/// # Errors
-/// A failure of the run.
 pub fn injected_model(stepping: Stepping) -> Result<(u64, f64), String> {
     let mut body = injected_start().piston(number("injected_piston/start"), stepping);
     body.advance(number("injected_piston/end"), &injection())?;

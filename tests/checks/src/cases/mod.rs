@@ -32,7 +32,6 @@ mod contact_tube;
 mod damping;
 pub(crate) mod drum;
 mod energy_balance;
-mod forces;
 mod friction_adhesion;
 pub(crate) mod gas;
 mod integrators;
@@ -46,7 +45,6 @@ mod static_discs;
 mod static_end_state;
 mod static_shells;
 mod static_wrinkling;
-pub(crate) mod step_limit;
 mod storeys_model;
 
 pub use rig::Rig;
@@ -72,8 +70,6 @@ pub struct Case {
     pub name: &'static str,
     /// What it compares.
     pub compares: &'static str,
-    /// About how long it takes on one core, s.
-    pub seconds: f64,
     /// Whether `--quick` skips it.
     pub tier: Tier,
     /// The function that runs it.

@@ -11,9 +11,6 @@ const MAX_SAMPLES: usize = 200_000;
 /// Frequency, Hz, of a signal of moving film, from a number of zero crossings, half a period apart.
 /// The signal is sampled at an interval (s). A crossing is interpolated linearly between two samples:
 /// for a sine the error is of third order in the interval.
-///
-/// # Errors
-/// A failure of the film, or that it does not oscillate.
 pub fn frequency(
     film: &mut FilmSimulation,
     interval: f64,
@@ -51,9 +48,6 @@ pub struct Extremum {
 }
 
 /// The first extrema of a signal, from parabolas through three samples at an interval (s).
-///
-/// # Errors
-/// As [`frequency`].
 pub fn extrema(
     film: &mut FilmSimulation,
     interval: f64,

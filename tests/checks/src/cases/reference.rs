@@ -23,25 +23,16 @@ fn find(path: &str) -> &'static Value {
 }
 
 /// A number by its path.
-///
-/// # Panics
-/// If there is none: the files are part of the program.
 pub fn number(path: &str) -> f64 {
     find(path).as_f64().unwrap_or_else(|| panic!("{path} in tests/reference is not a number"))
 }
 
 /// The numbers of these keys of an entry.
-///
-/// # Panics
-/// If there is none.
 pub fn entry<const N: usize>(path: &str, keys: [&str; N]) -> [f64; N] {
     keys.map(|key| number(&format!("{path}/{key}")))
 }
 
 /// The rows of a table, `path/rows`.
-///
-/// # Panics
-/// If there is none.
 pub fn rows(path: &str) -> Vec<Vec<f64>> {
     let rows = find(&format!("{path}/rows")).as_array();
     let numbers =
@@ -51,9 +42,6 @@ pub fn rows(path: &str) -> Vec<Vec<f64>> {
 }
 
 /// A list of numbers by its path.
-///
-/// # Panics
-/// If there is none.
 pub fn numbers(path: &str) -> Vec<f64> {
     let list: Option<Vec<f64>> =
         find(path).as_array().and_then(|list| list.iter().map(Value::as_f64).collect());

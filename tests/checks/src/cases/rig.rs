@@ -36,9 +36,6 @@ impl Default for Rig {
 
 impl Rig {
     /// The film of a scene at time 0.
-    ///
-    /// # Errors
-    /// What is invalid in the scene.
     pub fn start(&self, scene: &FilmScene) -> Result<FilmSimulation, String> {
         let film = capsule::start(&self.on_instruction_set(scene), &[]);
         let film = film.map_err(|error| error.to_string())?;
@@ -77,18 +74,12 @@ pub fn inflow(rate: f64, temperature: f64) -> Phase {
 }
 
 /// Advances film to a time, s.
-///
-/// # Errors
-/// Kind, time and location of the failure.
 pub fn advance(film: &mut FilmSimulation, target: f64, phase: &Phase) -> Result<(), String> {
     film.advance(target, phase)
         .map_err(|failure| format!("{:?} at {} s: {}", failure.kind, failure.time, failure.place))
 }
 
 /// What central differences keep beside the state.
-///
-/// # Panics
-/// If the film has another integrator.
 pub fn explicit(film: &FilmSimulation) -> StoredExplicit {
     match film.stored().map(|stored| stored.integrator) {
         Some(StoredIntegrator::Explicit(explicit)) => *explicit,
@@ -105,9 +96,6 @@ pub fn temperature(film: &FilmView<'_>) -> f64 {
 }
 
 /// The static equilibrium of a scene; the search may start from the equilibrium at another overpressure (Pa).
-///
-/// # Errors
-/// Why no equilibrium was found.
 pub fn equilibrium(
     rig: &Rig,
     scene: &FilmScene,
@@ -119,9 +107,6 @@ pub fn equilibrium(
 }
 
 /// The static equilibrium of film under an overpressure (Pa).
-///
-/// # Errors
-/// As [`equilibrium`].
 pub fn inflated(
     rig: &Rig,
     shell: Shell,

@@ -129,9 +129,6 @@ impl Row {
 
 /// The rows of quantities (name, reference, band) on three steps or meshes, each half as coarse as the one before. With
 /// `least`, every observed order must be that or more; otherwise the last one is reported.
-///
-/// # Errors
-/// That of a run.
 pub fn refined<const N: usize>(
     meshes: [u32; 3],
     quantities: [(&str, f64, f64); N],
@@ -151,9 +148,6 @@ pub fn refined<const N: usize>(
 
 /// The rows of quantities (name, reference) of taut film, of second order: the value of the finest of three meshes with
 /// the least order, and Richardson's extrapolation. Bands of both, and the least order.
-///
-/// # Errors
-/// That of a run.
 pub fn converged<const N: usize>(
     meshes: [u32; 3],
     quantities: [(&str, f64); N],

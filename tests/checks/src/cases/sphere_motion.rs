@@ -54,9 +54,6 @@ fn filled(pressure: f64, volume: f64) -> Filling {
 
 /// A sphere that starts to breathe about its equilibrium at this pressure (Pa), and its volume at rest (m³), with an
 /// integrator at a CFL number; `None` for its usual one.
-///
-/// # Errors
-/// A failure of the relaxation.
 pub fn breathing_start(
     rig: &Rig,
     level: u32,
@@ -78,9 +75,6 @@ pub fn breathing_start(
 
 /// Frequency of the radial mode of a breathing sphere with this volume at rest (m³), Hz, over six periods sampled at
 /// an interval (s); without one, at each step.
-///
-/// # Errors
-/// A failure of the run.
 pub fn breathing_frequency(
     film: &mut FilmSimulation,
     volume: f64,

@@ -20,18 +20,12 @@ use super::{Outcome, Rig, Row};
 const MAX_STEPS: u64 = 100_000;
 
 /// The static equilibrium of a quarter of the upper sheet with this number of cells along its side.
-///
-/// # Errors
-/// Why no equilibrium was found.
 pub fn inflated(rig: &Rig, cells: u32) -> Result<StaticSolution, String> {
     equilibrium(rig, &quarter(cells), None)
 }
 
 /// The same sheet brought to rest by damped motion with an integrator at a CFL number: the film, and its potential energy
 /// (J); or the film as far as it came, with the failure.
-///
-/// # Errors
-/// What is invalid in the scene.
 pub fn relaxed(
     rig: &Rig,
     cells: u32,

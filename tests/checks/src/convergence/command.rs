@@ -49,9 +49,6 @@ pub struct Args {
 }
 
 /// Runs `billow-checks converge`: one row per scene and measure.
-///
-/// # Errors
-/// Results that cannot be read, or that have no scene on four meshes; a table that cannot be written.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let mut all = Vec::new();
     for study in &args.studies {

@@ -68,9 +68,6 @@ pub struct Args {
 
 /// Runs `billow-checks pareto`: runs the scenes on one thread, prints every configuration and draws the pictures over
 /// element-steps and over seconds.
-///
-/// # Errors
-/// An unknown scene; a scene that fails; a file that cannot be written.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let rig = Rig { instruction_set: instruction_set::selected()?, ..Rig::default() };
     let mut diagrams = Vec::new();

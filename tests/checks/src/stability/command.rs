@@ -57,10 +57,6 @@ pub struct Args {
 
 /// Runs `billow-checks stability`: prints the numbers of cells by method and status, the borders and what is not as
 /// expected; as csv or json every cell.
-///
-/// # Errors
-/// A map file that is invalid; a signal; a cell that is not as expected, or a border that is not that of theory; a file
-/// that cannot be written.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let note = |text: &str| {
         if !args.quiet.quiet {

@@ -16,12 +16,13 @@ use billow_solver::scene::timeline::Timeline;
 use billow_solver::scene::{GasSupply, IntegratorKind};
 use nalgebra::Vector3;
 
+use super::stiffness::fastest_mode;
 use super::{
     Build, CONTACT_STIFFNESS, DAMPING, MODULUS, Parameter, Prepared, STEP, StabilityScene,
     THICKNESS, Values, compression, real, whole,
 };
+use crate::cases::Rig;
 use crate::cases::contact_rig::monitored_contact;
-use crate::cases::{Rig, step_limit};
 
 /// Samples of a run.
 const SAMPLES: f64 = 40.0;
@@ -140,7 +141,7 @@ fn free_sheet(rig: &Rig, kind: IntegratorKind, values: &Values) -> Result<Prepar
         .with_stiffness(&factors);
     let (compression, slack) = (film.compression, values.get("slack"));
     let linear = compression.to_bits() == 1.0_f64.to_bits() && slack.to_bits() == 0;
-    let omega = linear.then(|| step_limit::assembled(&flat, &film, &model));
+    let omega = linear.then(|| fastest_mode(&flat, &film, &model));
     let shell = moved(flat, |x| x * (1.0 - slack));
     let kick = |kick: &Vector3<f64>| Vector3::new(kick.x, kick.y, 0.0) * SPEED;
     let velocities = pseudo_random(shell.positions.len(), 4).iter().map(kick).collect();

@@ -11,6 +11,7 @@ use crate::cases::Rig;
 
 mod capsule;
 mod film;
+mod stiffness;
 mod vessel;
 
 /// Raised when a scene changes: cells of other versions run again.
