@@ -5,7 +5,6 @@
 mod bench;
 mod converge;
 mod fault_injection;
-mod monitor_detects_faults;
 mod pareto;
 mod physics_version;
 mod stability;

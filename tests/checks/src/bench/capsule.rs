@@ -4,6 +4,7 @@
 //! and the cost so far.
 
 use std::path::Path;
+use std::time::Instant;
 
 use billow_solver::models;
 use billow_solver::models::film::FilmRun;
@@ -12,10 +13,10 @@ use billow_solver::output::outcome::Stop;
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::timeline::Timeline;
 use billow_study::platform::error::{Error, Result};
+use billow_study::platform::files::{Disk, Files};
 use billow_study::platform::memory;
 use billow_study::scene::file::SceneFile;
 
-use super::machine::{Watch, core_share};
 use super::{Row, cost};
 
 /// The shipped scene.
@@ -46,13 +47,6 @@ impl Capsule {
             SceneFile::from_text(SCENE, Path::new("scenes/capsule.json"), &sets, instruction_set)?;
         let timeline = Timeline::of_film(&scene.film);
         Ok(Self { subdivisions, scene, timeline })
-    }
-
-    /// The same without contact and without the tunnelling monitor: film passes through film.
-    pub(super) fn without_contact(&self) -> Self {
-        let mut free = self.clone();
-        free.scene.film.contact = None;
-        free
     }
 }
 
@@ -128,4 +122,41 @@ impl<'a> Progress<'a> {
             ("peak_memory", memory::peak_resident().into()),
         ]
     }
+}
+
+/// Wall time and time on a core of this thread.
+pub(super) struct Watch {
+    start: Instant,
+    on_core: Option<f64>,
+}
+
+impl Watch {
+    /// Starts now.
+    pub(super) fn start() -> Self {
+        Self { start: Instant::now(), on_core: core_seconds() }
+    }
+
+    /// Wall time and time on a core so far, s; that of the core only if the system reports it.
+    pub(super) fn seconds(&self) -> (f64, Option<f64>) {
+        let wall = self.start.elapsed().as_secs_f64();
+        (wall, core_seconds().zip(self.on_core).map(|(now, then)| now - then))
+    }
+}
+
+/// Time this thread has run on a core so far, s, without other processes.
+fn core_seconds() -> Option<f64> {
+    let bytes = Disk.read(Path::new("/proc/thread-self/schedstat")).ok()?;
+    let text = String::from_utf8_lossy(&bytes);
+    let nanoseconds: u64 = text.split_whitespace().next()?.parse().ok()?;
+    Some(1e-9 * nanoseconds as f64)
+}
+
+/// Shortest wall time with a known core share, s. Chosen: the system accounts a thread's time in ticks
+/// of some milliseconds.
+const MIN_WALL_TIME: f64 = 0.1;
+
+/// Fraction of a wall time (s) in which a thread ran on a core (s); `None` if that is unknown, or if
+/// the wall time is too short.
+pub(super) fn core_share((wall, on_core): (f64, Option<f64>)) -> Option<f64> {
+    on_core.filter(|_| wall >= MIN_WALL_TIME).map(|on_core| on_core / wall)
 }

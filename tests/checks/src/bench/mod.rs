@@ -8,6 +8,7 @@
 //! work: other load on the machine only adds time.
 
 use std::io::Write;
+use std::path::Path;
 
 use billow_solver::platform::simd::InstructionSet;
 use billow_study::cli::options::{OutputOptions, QuietOption};
@@ -15,10 +16,10 @@ use billow_study::cli::print::print_rows;
 use billow_study::cli::{Format, instruction_set, output_error};
 use billow_study::input::value::{Value, brief_number};
 use billow_study::platform::error::Result;
+use billow_study::platform::files::{Disk, Files};
+use billow_study::platform::provenance;
 
 mod capsule;
-mod kernels;
-mod machine;
 mod stages;
 
 use capsule::{Capsule, Progress};
@@ -41,10 +42,6 @@ const MIN_CORE_SHARE: f64 = 0.95;
 /// A part of the bench.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Part {
-    /// Memory of the machine.
-    Machine,
-    /// The step without contact and its membrane kernel, on each instruction set.
-    Kernels,
     /// Stages of a step, in three states.
     Stages,
     /// Whole runs.
@@ -89,24 +86,11 @@ impl Args {
 /// Runs `billow-checks bench`. A signal ends it without figures.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let set = instruction_set::selected()?;
-    let mut machine = machine::row(set);
-    if args.has(Part::Machine) {
-        args.note("machine");
-        machine.extend(machine::speed());
-    }
-    let (mut kernels, mut stages, mut runs) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut stages, mut runs) = (Vec::new(), Vec::new());
     for n in args.subdivisions.iter().copied() {
-        let capsule = Capsule::new(n, &args.set, set)?;
-        if args.has(Part::Kernels) {
-            args.note(&format!("kernels, n {n}"));
-            kernels.extend(kernels::measure(&capsule, set)?);
-        }
-        if args.has(Part::Stages) || args.has(Part::Runs) {
-            measure_runs(args, &capsule, &mut stages, &mut runs)?;
-        }
+        measure(args, &Capsule::new(n, &args.set, set)?, &mut stages, &mut runs)?;
     }
-    let parts =
-        [("machine", vec![machine]), ("kernels", kernels), ("stages", stages), ("runs", runs)];
+    let parts = [("machine", vec![machine(set)]), ("stages", stages), ("runs", runs)];
     let shares = parts.iter().flat_map(|(_, rows)| rows).flatten();
     let shares = shares.filter_map(|(name, value)| match value {
         Value::Number(share) if *name == "core_share" => Some(*share),
@@ -122,8 +106,24 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     print(&parts, args.output.format(), out)
 }
 
+/// What the machine and the program are.
+fn machine(set: InstructionSet) -> Row {
+    let cores = std::thread::available_parallelism().ok().map(std::num::NonZero::get);
+    let bytes = Disk.read(Path::new("/proc/cpuinfo")).unwrap_or_default();
+    let text = String::from_utf8_lossy(&bytes);
+    let model = text.lines().find(|line| line.starts_with("model name"));
+    let cpu = model.and_then(|line| Some(line.split_once(':')?.1.trim()));
+    vec![
+        ("cpu", cpu.into()),
+        ("cores", cores.into()),
+        ("instruction_set", set.name().into()),
+        ("program_version", provenance::PROGRAM_VERSION.into()),
+        ("commit", provenance::COMMIT.into()),
+    ]
+}
+
 /// Runs one mesh: its cost to each time, and the stages of a step from three states.
-fn measure_runs(
+fn measure(
     args: &Args,
     capsule: &Capsule,
     stages: &mut Vec<Row>,
@@ -199,10 +199,4 @@ fn print(parts: &[(&'static str, Vec<Row>)], format: Format, out: &mut dyn Write
 /// The cost of a number of steps that took this wall time (s), ns per element and step.
 fn cost(seconds: f64, steps: u64, elements: usize) -> f64 {
     1e9 * seconds / (steps as f64 * elements as f64)
-}
-
-/// The instruction sets of this machine, up to the one in use.
-fn sets(selected: InstructionSet) -> impl Iterator<Item = InstructionSet> {
-    let narrower = InstructionSet::ALL.into_iter().take_while(move |set| *set != selected);
-    narrower.chain([selected]).filter(|set| set.available())
 }

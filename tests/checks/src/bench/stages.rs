@@ -14,8 +14,7 @@ use billow_solver::scene::timeline::Timeline;
 
 use billow_study::platform::error::{Error, Result};
 
-use super::capsule::Capsule;
-use super::machine::{Watch, core_share};
+use super::capsule::{Capsule, Watch, core_share};
 use super::{REPEATS, Row, cost};
 
 /// Steps that are timed: whole blocks of 50 steps of the tunnelling monitor, fewer on a large mesh.
@@ -90,7 +89,7 @@ impl Stopwatch for Clock {
 }
 
 /// Takes a number of steps along a timeline, with the same interval ends as a run.
-pub(super) fn take_steps(
+fn take_steps(
     film: &mut FilmSimulation,
     timeline: &Timeline,
     mut steps: u64,

@@ -9,18 +9,13 @@
 
 use billow_solver::geometry::fold::Chirality;
 use billow_solver::integrators;
-use billow_solver::models::film::FilmRun;
-use billow_solver::models::run::{self, Unobserved};
+use billow_solver::models::run;
 use billow_solver::output::outcome::{Deployment, FailureKind, Stop};
-use billow_solver::scene::film_scene::FilmContact;
+use billow_solver::scene::DEFAULT_CFL;
 use billow_solver::scene::monitor_settings::MonitorSettings;
-use billow_solver::scene::timeline::Timeline;
-use billow_solver::scene::{DEFAULT_CFL, IntegratorKind, ModelKind, Scene, paper};
 
 use super::contact_rig::unrecovered_contact_energy;
-use super::reference::number;
-use super::row::worse;
-use super::{Outcome, Rig, Row};
+use super::prelude::*;
 
 /// The run of a stowed capsule with this contact.
 pub fn stowed(rig: &Rig, scene: &Scene, contact: FilmContact) -> Result<FilmRun, String> {

@@ -4,18 +4,7 @@
 //! passages at any step = 0     intersections = 0     Σ m v = Σ m v at the start
 //! ```
 
-use billow_solver::geometry::shapes::{icosphere, joined, moved, sheet};
-use billow_solver::geometry::shell::Shell;
-use billow_solver::integrators::FilmView;
-use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
-use billow_solver::scene::paper::{free_film, nitrogen_supply};
-use billow_solver::scene::timeline::Phase;
-use billow_solver::scene::{Film, GasSupply};
-use nalgebra::Vector3;
-
-use super::contact_rig::{monitored_contact, plate, run_recorded};
-use super::reference::number;
-use super::{Outcome, Rig, Row};
+use super::prelude::*;
 
 /// Contact distance, m.
 const DISTANCE: f64 = 2e-3;

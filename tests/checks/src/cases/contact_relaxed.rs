@@ -11,18 +11,11 @@
 //! strain energy are compared.
 
 use billow_solver::geometry::mesh::{Mesh, Shape};
-use billow_solver::integrators::{FilmSimulation, FilmView};
-use billow_solver::models::film::{StaticState, capsule, static_states};
+use billow_solver::models::film::{StaticState, static_states};
 use billow_solver::scene::DEFAULT_CFL;
-use billow_solver::scene::Scene;
-use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
-use billow_solver::scene::paper;
-use billow_solver::scene::timeline::Phase;
 
 use super::contact_rig::intersection_count;
-use super::reference::{number, numbers, rows};
-use super::rig::advance;
-use super::{Outcome, Rig, Row};
+use super::prelude::*;
 
 /// Mass damping, 1/s. Chosen: small against the rates of the deployment, large enough to reach rest
 /// before [`LATEST`].

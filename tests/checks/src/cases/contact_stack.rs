@@ -8,20 +8,8 @@
 //! shifted, so that nodes do not lie on nodes.
 
 use billow_solver::collision::contact::{ContactModel, ContactState};
-use billow_solver::geometry::shapes::{joined, moved, sheet};
-use billow_solver::geometry::shell::Shell;
-use billow_solver::integrators::FilmView;
-use billow_solver::scene::Film;
-use billow_solver::scene::film_scene::{FilmContact, FilmScene};
-use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
-use billow_solver::scene::paper::free_film;
-use billow_solver::scene::timeline::Phase;
-use nalgebra::Vector3;
 
-use super::contact_rig::{monitored_contact, plate, run_recorded};
-use super::reference::{number, numbers};
-use super::rig::held;
-use super::{Outcome, Rig, Row};
+use super::prelude::*;
 
 const LAYERS: u32 = 4;
 /// Side of a sheet, m.

@@ -9,17 +9,9 @@
 //! its volume. The pressure is so low that the film hardly stretches.
 
 use billow_solver::geometry::shapes::tube;
-use billow_solver::geometry::shell::Shell;
-use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
-use billow_solver::scene::paper::{free_film, nitrogen_supply};
-use billow_solver::scene::timeline::Phase;
-use billow_solver::scene::{Film, GasSupply};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 
-use super::contact_rig::{monitored_contact, plate, run_recorded};
-use super::reference::{entry, number, rows};
-use super::rig::held;
-use super::{Outcome, Rig, Row};
+use super::prelude::*;
 
 /// Elements around the tube.
 const AROUND: u32 = 64;

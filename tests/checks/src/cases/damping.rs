@@ -10,21 +10,12 @@
 //! Symbols: ω frequency of the mode, ω0 that of film without loss, `ω_e` the highest frequency of an
 //! element, rad/s; g and τ of [`billow_solver::mechanics::material_loss`].
 
-use core::f64::consts::{PI, TAU};
-
-use billow_solver::geometry::shapes::{sheet, strip};
-use billow_solver::integrators::FilmSimulation;
+use billow_solver::geometry::shapes::strip;
 use billow_solver::mechanics::material_loss::Creep;
-use billow_solver::scene::Film;
-use billow_solver::scene::film_scene::FilmScene;
-use billow_solver::scene::paper::free_film;
-use billow_solver::scene::timeline::Phase;
-use nalgebra::{Complex, Vector3};
+use nalgebra::Complex;
 
 use super::oscillation::extrema;
-use super::reference::number;
-use super::rig::{advance, held};
-use super::{Outcome, Rig, Row};
+use super::prelude::*;
 
 /// What a vibrating strip shows.
 struct Vibration {

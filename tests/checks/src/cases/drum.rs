@@ -9,21 +9,12 @@
 //! The signal is the projection Σ m w φ on the mode φ: an admixture of other modes by the mesh has an
 //! effect of second order only.
 
-use core::f64::consts::TAU;
-
 use billow_solver::geometry::shapes::disc;
-use billow_solver::integrators::FilmSimulation;
-use billow_solver::scene::film_scene::FilmScene;
-use billow_solver::scene::paper::free_film;
-use billow_solver::scene::{Film, IntegratorKind};
-use nalgebra::Vector3;
 
 use super::oscillation::frequency;
-use super::reference::{entry, rows};
-use super::rig::held;
-use super::row::{converged, refined};
+use super::prelude::*;
+use super::row::converged;
 use super::shapes::disc_rim;
-use super::{Outcome, Rig};
 
 /// CFL number. Chosen: a period takes thousands of steps, so the error of the step is about 1e-8.
 pub const CFL: f64 = 0.9;

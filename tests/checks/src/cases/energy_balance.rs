@@ -4,19 +4,10 @@
 //! residual = |Δ(kinetic + stored) + lost + numerical + damping − external works| / (peak kinetic + Σ|external works|)
 //! ```
 
-use billow_solver::geometry::shapes::icosphere;
 use billow_solver::output::ledger::{GasBalance, gas_residuals, residuals};
-use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::inflow::Inflow;
-use billow_solver::scene::paper::{free_film, nitrogen_supply};
-use billow_solver::scene::timeline::Phase;
-use billow_solver::scene::{Film, GasSupply, HeatTransfer};
-use nalgebra::Vector3;
 
-use super::reference::number;
-use super::rig::advance;
-use super::row::worse;
-use super::{Outcome, Rig, Row};
+use super::prelude::*;
 
 /// A damped sphere that is thrown upward in air, filled, leaks, exchanges heat and has mass damping:
 /// every term at once.

@@ -5,19 +5,7 @@
 //! adhesion:  the sheets separate above the pull-off pressure
 //! ```
 
-use billow_solver::geometry::shapes::{joined, moved, sheet};
-use billow_solver::geometry::shell::Shell;
-use billow_solver::scene::Film;
-use billow_solver::scene::film_scene::{FilmContact, FilmScene};
-use billow_solver::scene::paper::free_film;
-use billow_solver::scene::timeline::Phase;
-use nalgebra::Vector3;
-
-use super::contact_rig::{monitored_contact, run_recorded};
-use super::reference::{entry, number};
-use super::rig::held;
-use super::row::worse;
-use super::{Outcome, Rig, Row};
+use super::prelude::*;
 
 /// Contact distance, and initial height of the upper sheet, m.
 const DISTANCE: f64 = 1e-3;

@@ -11,25 +11,16 @@
 //!
 //! Film: two plates close the volume with walls that are no film; a moving plate is a rigid plane.
 
-use core::f64::consts::TAU;
-
-use billow_solver::integrators::FilmSimulation;
 use billow_solver::integrators::dormand_prince::{Control, DEFAULT_TOLERANCE};
 use billow_solver::mechanics::gas::Gas;
 use billow_solver::models::piston::{EndFilm, Piston, PistonRun, PistonState, VolumeLaw};
 use billow_solver::models::run::Model;
-use billow_solver::scene::film_scene::{Filling, FilmScene};
-use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
-use billow_solver::scene::paper::{free_film, nitrogen_supply};
-use billow_solver::scene::timeline::Phase;
-use billow_solver::scene::{Film, GasSupply, HeatTransfer, IntegratorKind, Species, Stepping};
-use nalgebra::Vector3;
+use billow_solver::scene::Species;
 
-use super::reference::{entry, number, rows};
-use super::rig::{advance, held, inflow, temperature};
+use super::prelude::*;
+use super::rig::{inflow, temperature};
 use super::row::self_convergence_order;
 use super::shapes::gas_column;
-use super::{Outcome, Rig, Row};
 
 /// Nodes of the plates of a column of gas.
 const LOWER: [u32; 4] = [0, 1, 2, 3];

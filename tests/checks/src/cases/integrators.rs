@@ -8,11 +8,10 @@
 //! that keep them agree with each other within the sum of their errors.
 
 use billow_solver::integrators::entry;
-use billow_solver::scene::IntegratorKind;
 
-use super::reference::{number, numbers, rows};
+use super::prelude::*;
 use super::row::self_convergence_order;
-use super::{Outcome, Rig, Row, drum, gas, sphere_motion};
+use super::{drum, gas, sphere_motion};
 
 /// Level of the sphere's mesh.
 const LEVEL: u32 = 2;

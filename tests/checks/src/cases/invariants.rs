@@ -7,21 +7,13 @@
 //! ```
 
 use billow_solver::geometry::field::Field;
-use billow_solver::geometry::shapes::{icosphere, pseudo_random, sheet};
-use billow_solver::integrators::FilmView;
 use billow_solver::mechanics::forces::membrane::{
     CreepStep, NodeForces, assemble_membrane, numerical_forces,
 };
-use billow_solver::scene::film_scene::{Filling, FilmScene};
-use billow_solver::scene::paper::{free_film, nitrogen_supply};
-use billow_solver::scene::timeline::Phase;
-use billow_solver::scene::{Film, GasSupply};
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::Rotation3;
 
-use super::reference::number;
-use super::rig::{advance, explicit};
-use super::row::worse;
-use super::{Outcome, Rig, Row};
+use super::prelude::*;
+use super::rig::explicit;
 
 /// Rigid motion causes no strain.
 pub fn rigid_rotation(rig: &Rig) -> Outcome {

@@ -18,6 +18,7 @@ use rayon::prelude::{
 };
 
 pub mod command;
+pub mod prelude;
 pub mod reference;
 pub mod rig;
 mod row;

@@ -14,21 +14,10 @@
 //! [`HALF_WINDOW`], because the end rattles. The coherent share takes both arms as straight and arm B as
 //! rigid.
 
-use core::f64::consts::PI;
-
-use billow_solver::geometry::shapes::{crossed_grid, moved, pseudo_random};
-use billow_solver::integrators::FilmView;
+use billow_solver::geometry::shapes::crossed_grid;
 use billow_solver::output::ledger::{Ledger, residuals};
-use billow_solver::scene::Film;
-use billow_solver::scene::film_scene::{FilmContact, FilmScene};
-use billow_solver::scene::paper::free_film;
-use billow_solver::scene::timeline::Phase;
-use nalgebra::Vector3;
 
-use super::reference::{number, numbers};
-use super::rig::{advance, held};
-use super::row::worse;
-use super::{Outcome, Rig, Row};
+use super::prelude::*;
 
 /// Length of an arm over the width of the strip.
 const ASPECT: u32 = 5;

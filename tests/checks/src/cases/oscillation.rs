@@ -1,9 +1,6 @@
 //! Frequency and extrema of an oscillation.
 
-use billow_solver::integrators::{FilmSimulation, FilmView};
-use billow_solver::scene::timeline::Phase;
-
-use super::rig::advance;
+use super::prelude::*;
 
 /// Most samples of a signal. Chosen: ends a run that does not oscillate.
 const MAX_SAMPLES: usize = 200_000;

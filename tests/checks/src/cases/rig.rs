@@ -1,23 +1,16 @@
 //! What the cases share: supports and inflow, advancing film, and the deliberate fault that a test
 //! may inject.
 
-use billow_solver::geometry::shell::Shell;
+use billow_solver::integrators::StoredIntegrator;
 use billow_solver::integrators::explicit::StoredExplicit;
-use billow_solver::integrators::{FilmSimulation, FilmView, StoredIntegrator};
-use billow_solver::models::film::capsule;
 use billow_solver::platform::fault_injection::Fault;
 use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::Film;
-use billow_solver::scene::film_scene::Filling;
-use billow_solver::scene::film_scene::FilmScene;
-use billow_solver::scene::film_support::{FilmSupport, Hold};
 use billow_solver::scene::inflow::Inflow;
-use billow_solver::scene::paper::free_film;
-use billow_solver::scene::timeline::Phase;
 use billow_solver::statics::{self, StaticSolution};
 use billow_solver::system::PressureLoad;
-use nalgebra::Vector3;
 use std::ops::ControlFlow;
+
+use super::prelude::*;
 
 /// How cases are run: as they are, or with a deliberate fault that a case must detect.
 #[derive(Debug, Clone, Copy)]

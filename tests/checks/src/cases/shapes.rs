@@ -3,11 +3,9 @@
 //!
 //! Every shape has one arithmetic and one numbering: bands of reference cases depend on their bits.
 
-use core::f64::consts::{PI, TAU};
+use billow_solver::geometry::shapes::revolved;
 
-use billow_solver::geometry::shapes::{revolved, ring_nodes};
-use billow_solver::geometry::shell::Shell;
-use nalgebra::Vector3;
+use super::prelude::*;
 
 /// Nodes on the rim of a [`billow_solver::geometry::shapes::disc`] of this many rings.
 pub fn disc_rim(rings: u32) -> Vec<u32> {

@@ -4,18 +4,11 @@
 //! m λ̈ R² = (p 4π R³ λ² − dW/dλ)         p = p0 (λ0/λ)^(3γ),  W = 4π R² t E/(1−ν) ((λ²−1)/2)²
 //! ```
 
-use billow_solver::geometry::shapes::icosphere;
-use billow_solver::geometry::shell::Shell;
-use billow_solver::integrators::FilmSimulation;
 use billow_solver::models::film::Relaxation;
-use billow_solver::scene::film_scene::{Filling, FilmScene};
-use billow_solver::scene::paper::{free_film, nitrogen_supply};
-use billow_solver::scene::{Film, GasSupply, IntegratorKind};
 
 use super::oscillation::{extrema, frequency};
-use super::reference::{entry, number, rows};
+use super::prelude::*;
 use super::row::converged;
-use super::{Outcome, Rig};
 
 /// Temperature of the gas, K. Chosen: that of the film, so that its mass follows from its pressure.
 const TEMPERATURE: f64 = 293.0;

@@ -5,16 +5,9 @@
 //! found, and lower is better.
 
 use billow_solver::geometry::shapes::{grid, nodes_where};
-use billow_solver::integrators::FilmSimulation;
-use billow_solver::mechanics::resultants::resultants;
-use billow_solver::scene::film_scene::{Filling, FilmScene};
-use billow_solver::scene::paper::free_film;
-use billow_solver::scene::{Film, IntegratorKind};
 use billow_solver::statics::{Relaxation, StaticSolution, Unsettled};
 
-use super::reference::{entry, number, rows};
-use super::rig::{equilibrium, held};
-use super::{Outcome, Rig, Row};
+use super::prelude::*;
 
 /// Most steps of a damped motion. Chosen: ten times what the finest mesh needs that is brought to rest by motion.
 const MAX_STEPS: u64 = 100_000;

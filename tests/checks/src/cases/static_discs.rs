@@ -7,16 +7,10 @@
 //! revolution. It is an equilibrium but not the one of least energy: a rim with deep dents encloses
 //! more volume. A mesh of six sectors, oblique to the meridians, finds such dented states.
 
-use billow_solver::geometry::shapes::{disc, ring_nodes};
-use billow_solver::mechanics::resultants::resultants;
-use billow_solver::scene::Film;
-use nalgebra::Vector3;
+use billow_solver::geometry::shapes::disc;
 
-use super::reference::{entry, number, rows};
-use super::rig::{compliant, held, inflated, mean};
-use super::row::refined;
+use super::prelude::*;
 use super::shapes::{disc_rim, radial_disc};
-use super::{Outcome, Rig};
 
 /// Thickness of the film of the clamped disc, m. Chosen: only E t matters.
 const THICKNESS: f64 = 1e-4;

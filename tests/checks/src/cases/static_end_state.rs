@@ -7,18 +7,10 @@
 
 use billow_solver::geometry::fold::{Caps, FoldDesign, FoldPattern};
 use billow_solver::geometry::mesh::{Mesh, Shape};
-use billow_solver::geometry::shell::Shell;
-use billow_solver::scene::Film;
-use billow_solver::scene::film_scene::{Filling, FilmScene};
-use billow_solver::scene::paper::{self, free_film};
 use billow_solver::statics::StaticSolution;
-use nalgebra::Vector3;
 
-use super::reference::{entry, number, numbers, rows};
-use super::rig::{compliant, equilibrium, inflated, mean};
-use super::row::refined;
+use super::prelude::*;
 use super::shapes::{CappedFrustum, capped_frustum};
-use super::{Outcome, Rig};
 
 /// Names of the sizes, in the order of the table.
 const SIZES: [&str; 5] = [

@@ -10,19 +10,9 @@
 //! `p π (R λ_hoop)²` ends the cylinder, a rigid disc under `p π r²` the cone. Forces of the cone are true
 //! ones (per deformed width) in its middle third, each compared at its own radius.
 
-use core::f64::consts::PI;
+use billow_solver::geometry::shapes::revolved;
 
-use billow_solver::geometry::shapes::{icosphere, revolved, ring_nodes};
-use billow_solver::geometry::shell::Shell;
-use billow_solver::mechanics::resultants::resultants;
-use billow_solver::scene::Film;
-use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
-use nalgebra::Vector3;
-
-use super::reference::{entry, number, rows};
-use super::rig::{compliant, held, inflated, mean};
-use super::row::{refined, worse};
-use super::{Outcome, Rig, Row};
+use super::prelude::*;
 
 /// Stretch of a sphere.
 pub fn sphere(rig: &Rig) -> Outcome {

@@ -10,20 +10,10 @@
 //! reaction. The wrinkle radius is the outer radius of the last ring in which most elements are
 //! wrinkled.
 
-use billow_solver::geometry::shapes::{grid, nodes_where, revolved, ring_nodes};
+use billow_solver::geometry::shapes::{grid, nodes_where, revolved};
 use billow_solver::mechanics::material::Regime;
-use billow_solver::mechanics::resultants::resultants;
-use billow_solver::scene::Film;
-use billow_solver::scene::film_scene::FilmScene;
-use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
-use billow_solver::scene::motion::{Motion, Profile, Rotation};
-use billow_solver::scene::paper::free_film;
-use nalgebra::Vector3;
 
-use super::reference::{entry, number, rows};
-use super::rig::{equilibrium, held};
-use super::row::refined;
-use super::{Outcome, Rig, Row};
+use super::prelude::*;
 
 /// Height and half length of the beam, m.
 const BEAM: f64 = 0.2;

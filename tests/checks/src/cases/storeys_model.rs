@@ -1,13 +1,9 @@
 //! The model storeys: the paper's capsule against recorded film, and its only time scale.
 
 use billow_solver::models;
-use billow_solver::models::run::Unobserved;
 use billow_solver::output::outcome::{Deployment, Stop};
-use billow_solver::scene::paper::{self, window};
-use billow_solver::scene::{Film, HeatTransfer, ModelKind, Scene, Stepping};
 
-use super::reference::number;
-use super::{Outcome, Rig, Row};
+use super::prelude::*;
 
 /// CFL number of film, the default of a study.
 const CFL: f64 = 0.45;

@@ -41,7 +41,11 @@ type Method = (ModelKind, Vec<u32>);
 
 /// The table from these scenes, with the errors against the mesh of `reference` subdivisions; `None` if no scene
 /// has a run on it.
-pub fn calibrate(scenes: &[SceneRuns], studies: Vec<String>, reference: u32) -> Option<MeshErrors> {
+pub(super) fn calibrate(
+    scenes: &[SceneRuns],
+    studies: Vec<String>,
+    reference: u32,
+) -> Option<MeshErrors> {
     let scenes = longest(scenes, reference);
     let all = || scenes.iter().flat_map(|scene| &scene.runs);
     let coverage = Coverage::of(all().map(|run| (&run.scene, run.features)))?;

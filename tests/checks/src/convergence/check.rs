@@ -17,46 +17,42 @@ use billow_study::analysis::statistics::Spread;
 use billow_study::job::proportion::Proportion;
 
 /// The runs on one mesh, for one measure.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MeshCheck {
+#[derive(Debug)]
+pub(super) struct MeshCheck {
     /// Subdivisions of the mesh.
-    pub subdivisions: u32,
+    pub(super) subdivisions: u32,
     /// Name of the measure.
-    pub measure: &'static str,
+    pub(super) measure: &'static str,
     /// Of the runs with an error in the table, those that keep it.
-    pub kept: Proportion,
+    pub(super) kept: Proportion,
     /// Median relative error of these runs.
-    pub error: f64,
+    pub(super) error: f64,
     /// Median relative error of the table for them.
-    pub of_table: f64,
+    pub(super) of_table: f64,
 }
 
 /// The checks of film on each mesh coarser than that of `table`, for each promised measure.
-pub fn check(scenes: &[SceneRuns], table: &MeshErrors) -> Vec<MeshCheck> {
-    let meshes = scenes.iter().flat_map(|scene| &scene.runs).map(MeshRun::mesh);
-    let coarser = meshes.filter(|(model, n)| *model == ModelKind::Film && *n < table.reference);
-    let mut pairs: BTreeMap<u32, Vec<Vec<[f64; 2]>>> =
-        coarser.map(|(_, n)| (n, vec![Vec::new(); PROMISED.len()])).collect();
+pub(super) fn check(scenes: &[SceneRuns], table: &MeshErrors) -> Vec<MeshCheck> {
+    // Errors of runs and of the table by mesh and place of the measure.
+    let mut pairs: BTreeMap<(u32, usize), Vec<[f64; 2]>> = BTreeMap::new();
     for scene in scenes {
         for (index, promised) in PROMISED.iter().enumerate() {
             for (n, pair) in errors(scene, promised, table) {
-                pairs.entry(n).and_modify(|measures| measures[index].push(pair));
+                pairs.entry((n, index)).or_default().push(pair);
             }
         }
     }
-    let of_mesh = |(n, measures): (u32, Vec<Vec<[f64; 2]>>)| {
-        PROMISED.iter().zip(measures).filter_map(move |(promised, pairs)| {
-            let median = |end: usize| Some(Spread::of(pairs.iter().map(|pair| pair[end]))?.median);
-            Some(MeshCheck {
-                subdivisions: n,
-                measure: promised.measure.name(),
-                kept: Proportion::count(pairs.iter().map(|[error, of_table]| error <= of_table)),
-                error: median(0)?,
-                of_table: median(1)?,
-            })
+    let check = |((subdivisions, index), pairs): ((u32, usize), Vec<[f64; 2]>)| {
+        let median = |end: usize| Some(Spread::of(pairs.iter().map(|pair| pair[end]))?.median);
+        Some(MeshCheck {
+            subdivisions,
+            measure: PROMISED[index].measure.name(),
+            kept: Proportion::count(pairs.iter().map(|[error, of_table]| error <= of_table)),
+            error: median(0)?,
+            of_table: median(1)?,
         })
     };
-    pairs.into_iter().flat_map(of_mesh).collect()
+    pairs.into_iter().filter_map(check).collect()
 }
 
 /// The runs of a scene on coarser meshes: subdivisions, error of the run and error of the table, relative.

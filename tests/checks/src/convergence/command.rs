@@ -3,7 +3,6 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use crate::convergence::{self, MeshCheck, ORDERS, SceneRuns, Trend, calibrate, fit, levels};
 use billow_study::accuracy::{MeshErrors, PROMISED};
 use billow_study::cli::Format;
 use billow_study::cli::options::{OutputOptions, QuietOption, ResultsOption};
@@ -13,6 +12,12 @@ use billow_study::input::value::Value;
 use billow_study::job::row::ColumnId;
 use billow_study::platform::error::{Error, Result};
 use billow_study::platform::files::{Disk, disk_error, write_output};
+
+use super::calibrate::calibrate;
+use super::check::{MeshCheck, check};
+use super::fit::{ORDERS, fit};
+use super::limit::levels;
+use super::runs::{SceneRuns, by_scene};
 
 /// Measures that are looked at beside the promised ones.
 const MEASURES: [ColumnId; 8] = [
@@ -62,7 +67,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             names.push(stored.study.name.clone());
         }
     }
-    let scenes = convergence::by_scene(&all);
+    let scenes = by_scene(&all);
     if args.check {
         return print_checks(&scenes, &names, args, out);
     }
@@ -98,7 +103,7 @@ fn print_checks(
     out: &mut dyn Write,
 ) -> Result<()> {
     let table = MeshErrors::shipped();
-    let checks = convergence::check(scenes, table);
+    let checks = check(scenes, table);
     if checks.is_empty() {
         let allowed = format!(
             "results with film on n {} and on a coarser mesh, in scenes that the table covers",
@@ -151,8 +156,8 @@ fn rows(scene: &SceneRuns) -> Vec<Vec<Value>> {
         let fit = fit(&levels)?;
         let (first, last) = (levels.first()?, levels.last()?);
         // A fitted number that is no limit must not be read as one.
-        let trend = convergence::trend(&levels, &fit);
-        let known = |value: f64| Value::from((trend == Trend::Limit).then_some(value));
+        let has_limit = fit.has_limit(&levels);
+        let known = |value: f64| Value::from(has_limit.then_some(value));
         let relative = |value: f64| match last.value {
             0.0 => Value::Null,
             finest => known(value / finest),
@@ -167,7 +172,7 @@ fn rows(scene: &SceneRuns) -> Vec<Vec<Value>> {
             relative(fit.limit - last.value),
             relative(fit.uncertainty),
             fit.order.into(),
-            trend.name().into(),
+            if has_limit { "limit" } else { "no limit known" }.into(),
         ])
     };
     measures.filter_map(row).collect()

@@ -12,7 +12,7 @@
 //! The perturbations are the same in each call.
 
 /// Smallest and largest order of a fit. Below the smallest, f₀ is not determined by meshes that differ tenfold.
-pub const ORDERS: [f64; 2] = [0.5, 2.0];
+pub(super) const ORDERS: [f64; 2] = [0.5, 2.0];
 /// Steps of the order between them.
 const ORDER_STEPS: u32 = 60;
 /// How far the order of a fit of perturbed values may be from that of the values. Chosen: a wider range lets noise
@@ -25,37 +25,51 @@ const QUANTILE: usize = FITS * 95 / 100;
 
 /// A measure on one mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Level {
+pub(super) struct Level {
     /// Subdivisions.
-    pub subdivisions: u32,
+    pub(super) subdivisions: u32,
     /// Value: the median of its runs.
-    pub value: f64,
+    pub(super) value: f64,
     /// Standard error of that value by the seeds.
-    pub noise: f64,
+    pub(super) noise: f64,
     /// Number of its runs.
-    pub runs: usize,
+    pub(super) runs: usize,
 }
 
 /// The limit of a measure.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fit {
+pub(super) struct Fit {
     /// f₀.
-    pub limit: f64,
+    pub(super) limit: f64,
     /// Order p.
-    pub order: f64,
+    pub(super) order: f64,
     /// U, 95 %.
-    pub uncertainty: f64,
+    pub(super) uncertainty: f64,
+}
+
+/// Largest distance of a limit, with its uncertainty, from the finest value, relative, for which the limit
+/// counts as known. Chosen: beyond it the error would be mainly that of the limit.
+const MAX_DISTANCE: f64 = 0.05;
+
+impl Fit {
+    /// Whether a limit is known: together with its uncertainty it lies near the finest value. Otherwise the measure
+    /// changes too slowly, or too irregularly.
+    pub(super) fn has_limit(&self, levels: &[Level]) -> bool {
+        let finest = levels.last().map_or(0.0, |level| level.value);
+        (self.limit - finest).abs() + self.uncertainty <= MAX_DISTANCE * finest.abs()
+    }
 }
 
 /// Fits the values of at least four meshes; `None` for fewer, or for a value that is not finite.
-pub fn fit(levels: &[Level]) -> Option<Fit> {
+pub(super) fn fit(levels: &[Level]) -> Option<Fit> {
     let finite = levels.iter().all(|level| level.value.is_finite() && level.noise.is_finite());
     if levels.len() < 4 || !finite {
         return None;
     }
     let values: Vec<f64> = levels.iter().map(|level| level.value).collect();
     let best = best(levels, &values, ORDERS);
-    let sigma = best.scatter(levels.len());
+    let meshes = levels.len() as f64;
+    let variance = best.residual * meshes / (meshes - 3.0);
     let near = [ORDERS[0].max(best.order - ORDER_RANGE), ORDERS[1].min(best.order + ORDER_RANGE)];
     let mut normal = Normal::new();
     let mut deviations: Vec<f64> = (0..FITS)
@@ -63,8 +77,7 @@ pub fn fit(levels: &[Level]) -> Option<Fit> {
             let perturbed: Vec<f64> = levels
                 .iter()
                 .map(|level| {
-                    let width = (sigma * sigma + level.noise * level.noise).sqrt();
-                    level.value + width * normal.next()
+                    level.value + (variance + level.noise * level.noise).sqrt() * normal.next()
                 })
                 .collect();
             (self::best(levels, &perturbed, near).limit - best.limit).abs()
@@ -82,14 +95,6 @@ struct Candidate {
     order: f64,
     /// Σ w r² / Σ w.
     residual: f64,
-}
-
-impl Candidate {
-    /// Scatter of the values about the fit.
-    fn scatter(&self, meshes: usize) -> f64 {
-        let free = meshes.saturating_sub(3).max(1);
-        (self.residual * meshes as f64 / free as f64).sqrt()
-    }
 }
 
 /// The fit with the order of the smallest residual, of orders in a range.
@@ -172,12 +177,6 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_series_that_converges_too_slowly_has_a_wide_uncertainty() {
-        let slow = fit(&levels(|h| 3.0 + 0.1 * libm::log(h), 0.002)).unwrap();
-        assert!(slow.order < 0.55, "{}", slow.order);
-    }
-
     /// Of noisy series of known limit, the uncertainty holds the limit in nine of ten.
     #[test]
     fn the_uncertainty_holds_the_limit() {
@@ -194,10 +193,5 @@ mod tests {
             held += u32::from((fit.limit - 1.0).abs() <= fit.uncertainty);
         }
         assert!(held >= 90, "{held} of 100");
-    }
-
-    #[test]
-    fn fewer_than_four_meshes_have_no_fit() {
-        assert_eq!(fit(&levels(|h| h, 0.0)[..3]), None);
     }
 }

@@ -4,13 +4,13 @@
 //! change = mean of m_∞/m_ref − 1 over the scenes;  U² = mean of their squared uncertainties + (largest distance from it)²
 //! noise of a median of k runs = half their range/√k
 //! ```
-//! m_∞: [`super::fit()`].
+//! m_∞: [`super::fit`].
 
 use std::collections::BTreeMap;
 
 use billow_solver::scene::ModelKind;
 
-use super::fit::{self, Level};
+use super::fit::{Level, fit};
 use super::runs::SceneRuns;
 use billow_study::accuracy::Limit;
 use billow_study::analysis::statistics::Spread;
@@ -24,16 +24,16 @@ const COARSEST_OF_LIMIT: u32 = 4;
 
 /// To what a measure tends, from the scenes with several runs on several meshes: the mean of their limits, with an
 /// uncertainty that holds them all.
-pub fn limit(scenes: &[&SceneRuns], measure: ColumnId, reference: u32) -> Limit {
+pub(super) fn limit(scenes: &[&SceneRuns], measure: ColumnId, reference: u32) -> Limit {
     let of_scene = |scene: &&SceneRuns| {
         let levels = levels(scene, measure);
         if levels.iter().filter(|level| level.runs >= LIMIT_RUNS).count() < LIMIT_MESHES {
             return None;
         }
         let finest = levels.iter().find(|level| level.subdivisions == reference)?.value;
-        let fit = fit::fit(&levels).filter(|_| finest != 0.0)?;
+        let fit = fit(&levels).filter(|_| finest != 0.0)?;
         Some(Limit {
-            known: super::trend(&levels, &fit) == super::Trend::Limit,
+            known: fit.has_limit(&levels),
             change: fit.limit / finest - 1.0,
             uncertainty: (fit.uncertainty / finest).abs(),
             order: fit.order,
@@ -54,7 +54,7 @@ pub fn limit(scenes: &[&SceneRuns], measure: ColumnId, reference: u32) -> Limit 
 }
 
 /// The medians of a measure by mesh, coarsest first: those of which a limit can follow.
-pub fn levels(scene: &SceneRuns, measure: ColumnId) -> Vec<Level> {
+pub(super) fn levels(scene: &SceneRuns, measure: ColumnId) -> Vec<Level> {
     let mut levels = all_levels(scene, measure);
     let fine = levels.iter().filter(|level| level.subdivisions >= COARSEST_OF_LIMIT).count();
     if fine >= LIMIT_MESHES {

@@ -15,21 +15,21 @@ use billow_study::accuracy::features::FEATURES;
 const PENALTIES: [f64; 10] = [0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 1e6];
 
 /// Coordinates u of a scene, and its bias y.
-pub type Point = ([f64; FEATURES], f64);
+pub(super) type Point = ([f64; FEATURES], f64);
 
 /// The bias as a linear function of the coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Regression {
+pub(super) struct Regression {
     /// b: the bias at u = 0.
-    pub intercept: f64,
+    pub(super) intercept: f64,
     /// Slope of each coordinate u; 0 for one that is 0 in every scene.
-    pub slopes: [f64; FEATURES],
+    pub(super) slopes: [f64; FEATURES],
     /// Root of the mean squared deviation of a scene from the prediction of all others; 0 for a single scene.
-    pub deviation: f64,
+    pub(super) deviation: f64,
 }
 
 /// The regression over these scenes; `None` without any.
-pub fn regression(points: &[Point]) -> Option<Regression> {
+pub(super) fn regression(points: &[Point]) -> Option<Regression> {
     let scale: [f64; FEATURES] = core::array::from_fn(|index| {
         let squares: f64 = points.iter().map(|(u, _)| u[index] * u[index]).sum();
         (squares / points.len() as f64).sqrt()

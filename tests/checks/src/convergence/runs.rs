@@ -15,27 +15,27 @@ use billow_study::store::stored::Stored;
 
 /// One trusted run.
 #[derive(Debug, Clone)]
-pub struct MeshRun {
+pub(super) struct MeshRun {
     /// Its scene.
-    pub scene: Scene,
+    pub(super) scene: Scene,
     /// The features of its scene.
-    pub features: Features,
+    pub(super) features: Features,
     /// Its row.
-    pub cells: Cells,
+    pub(super) cells: Cells,
 }
 
 /// The runs of one scene, with whatever mesh, model and seed.
 #[derive(Debug, Clone)]
-pub struct SceneRuns {
+pub(super) struct SceneRuns {
     /// The runs, in plan order.
-    pub runs: Vec<MeshRun>,
+    pub(super) runs: Vec<MeshRun>,
     /// The parameters of the scene but mesh, model and seed, as text.
-    pub label: String,
+    pub(super) label: String,
 }
 
 impl MeshRun {
     /// A measure. The state at the end counts only where the capsule is deployed: it is at rest then.
-    pub fn measure(&self, measure: ColumnId) -> Option<f64> {
+    pub(super) fn measure(&self, measure: ColumnId) -> Option<f64> {
         let at_end = promise(measure.name()).is_some_and(Promised::is_at_end);
         if at_end && self.cells.verdict() != Some(Verdict::Deployed) {
             return None;
@@ -44,7 +44,7 @@ impl MeshRun {
     }
 
     /// Model and subdivisions; a model without mesh has 0.
-    pub fn mesh(&self) -> (ModelKind, u32) {
+    pub(super) fn mesh(&self) -> (ModelKind, u32) {
         match self.scene.solver.model {
             ModelKind::Film => (ModelKind::Film, self.scene.design.subdivisions),
             meshless => (meshless, 0),
@@ -53,7 +53,7 @@ impl MeshRun {
 }
 
 /// The trusted runs of stored results, by scene.
-pub fn by_scene(all: &[Stored<'_>]) -> Vec<SceneRuns> {
+pub(super) fn by_scene(all: &[Stored<'_>]) -> Vec<SceneRuns> {
     let mut scenes: BTreeMap<String, SceneRuns> = BTreeMap::new();
     for (stored, point) in
         all.iter().flat_map(|stored| stored.points.iter().map(move |point| (stored, point)))

@@ -3,7 +3,10 @@
 use billow_solver::scene::paper::capsule;
 use billow_solver::scene::{ModelKind, Stepping};
 
-use super::*;
+use super::calibrate::calibrate;
+use super::check::check;
+use super::limit::levels;
+use super::runs::{MeshRun, SceneRuns};
 use billow_study::accuracy::features::FEATURE_NAMES;
 use billow_study::accuracy::{Features, Method, PROMISED};
 use billow_study::job::Status;

@@ -6,24 +6,15 @@
 
 mod whole_runs;
 
-use billow_checks::cases::Rig;
 use billow_checks::cases::contact_capsule::stowed;
-use billow_checks::cases::rig::{explicit, held};
-use billow_solver::geometry::shapes::{icosphere, pseudo_random, sheet, tube};
-use billow_solver::integrators::FilmSimulation;
+use billow_checks::cases::prelude::*;
+use billow_checks::cases::rig::explicit;
+use billow_solver::geometry::shapes::tube;
 use billow_solver::models;
 use billow_solver::models::run::Model;
-use billow_solver::models::run::Unobserved;
 use billow_solver::output::history::COLUMNS;
 use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
-use billow_solver::scene::film_support::{FilmSupport, Hold};
 use billow_solver::scene::inflow::Inflow;
-use billow_solver::scene::motion::{Motion, Profile, Rotation};
-use billow_solver::scene::paper::{self, free_film, nitrogen_supply, window};
-use billow_solver::scene::timeline::Phase;
-use billow_solver::scene::{Film, GasSupply, HeatTransfer, ModelKind, Scene, Stepping};
-use nalgebra::Vector3;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 

@@ -1,24 +1,17 @@
 //! Whole runs with a lid, friction, adhesion, closing faces, moving plates and free bodies: the bits of
 //! their histories.
 
-use billow_checks::cases::rig::held;
+use billow_checks::cases::prelude::*;
 use billow_checks::cases::shapes::gas_column;
-use billow_solver::geometry::shapes::{ring_nodes, sheet, tube};
-use billow_solver::geometry::shell::Shell;
+use billow_solver::geometry::shapes::tube;
 use billow_solver::models;
-use billow_solver::models::film::FilmRun;
-use billow_solver::models::run::{Unobserved, run};
+use billow_solver::models::run::run;
 use billow_solver::output::history::COLUMNS;
 use billow_solver::output::outcome::{Deployment, Stop};
 use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::film_scene::{Filling, FilmContact, FilmOutputs, FilmScene, FilmSolver};
-use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
-use billow_solver::scene::motion::{Motion, Profile};
-use billow_solver::scene::paper::{self, free_film, nitrogen_supply, window};
+use billow_solver::scene::film_scene::{FilmOutputs, FilmSolver};
 use billow_solver::scene::plate::Plate;
-use billow_solver::scene::timeline::Timeline;
-use billow_solver::scene::{Film, GasSupply, ModelKind, Scene, Stepping};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 
 use super::hash;
 

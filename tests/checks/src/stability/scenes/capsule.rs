@@ -1,18 +1,15 @@
 //! The paper's stowed capsule with contact, for film and for the models without film.
 
 use billow_solver::geometry::mesh::Shape;
-use billow_solver::models::film::{Rings, capsule};
-use billow_solver::scene::film_scene::{FilmContact, FilmScene};
+use billow_solver::models::film::Rings;
 use billow_solver::scene::monitor_settings::MonitorSettings;
-use billow_solver::scene::paper::{self, window};
-use billow_solver::scene::{ModelKind, Scene, Stepping};
 
 use super::film::prepared;
 use super::{
     Build, CONTACT_STIFFNESS, MODULUS, Parameter, Prepared, STEP, StabilityScene, THICKNESS,
     Values, compression, real, whole,
 };
-use crate::cases::Rig;
+use crate::cases::prelude::*;
 use crate::stability::Method;
 
 /// Simulated time, s. Chosen: the stack rises and unfolds in it.

@@ -5,24 +5,17 @@
 //!        ω_max of the assembled stiffness, by power iteration
 //! ```
 
-use billow_solver::geometry::shapes::{icosphere, joined, moved, pseudo_random, sheet};
-use billow_solver::geometry::shell::Shell;
-use billow_solver::integrators::{FilmSimulation, SimulationSettings};
+use billow_solver::integrators::SimulationSettings;
 use billow_solver::mechanics::film_model::FilmModel;
-use billow_solver::models::film::{FilmRun, Rings, capsule};
-use billow_solver::scene::film_scene::{Filling, FilmScene};
-use billow_solver::scene::paper::{TEMPERATURE, free_film, nitrogen_supply, window};
-use billow_solver::scene::timeline::Timeline;
-use billow_solver::scene::{GasSupply, IntegratorKind};
-use nalgebra::Vector3;
+use billow_solver::models::film::Rings;
+use billow_solver::scene::paper::TEMPERATURE;
 
 use super::stiffness::fastest_mode;
 use super::{
     Build, CONTACT_STIFFNESS, DAMPING, MODULUS, Parameter, Prepared, STEP, StabilityScene,
     THICKNESS, Values, compression, real, whole,
 };
-use crate::cases::Rig;
-use crate::cases::contact_rig::monitored_contact;
+use crate::cases::prelude::*;
 
 /// Samples of a run.
 const SAMPLES: f64 = 40.0;

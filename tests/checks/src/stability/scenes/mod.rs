@@ -1,13 +1,10 @@
 //! The small scenes of the map, and the parameters that a map may vary in each.
 
 use billow_solver::geometry::field::Field;
-use billow_solver::models::film::FilmRun;
-use billow_solver::scene::timeline::Timeline;
-use billow_solver::scene::{Film, IntegratorKind, Scene};
 use billow_solver::system::FilmSystem;
 
 use super::Method;
-use crate::cases::Rig;
+use crate::cases::prelude::*;
 
 mod capsule;
 mod film;

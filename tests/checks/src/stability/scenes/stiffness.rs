@@ -6,11 +6,9 @@
 //!
 //! K is assembled here from the gradients of the reference, not by the solver.
 
-use billow_solver::geometry::shapes::pseudo_random;
-use billow_solver::geometry::shell::Shell;
+use crate::cases::prelude::*;
 use billow_solver::mechanics::film_model::FilmModel;
-use billow_solver::scene::Film;
-use nalgebra::{Matrix2x3, Vector2, Vector3};
+use nalgebra::{Matrix2x3, Vector2};
 
 /// The in-plane strain-displacement gradients of an element's reference, corner by corner.
 fn gradients([a, b, c]: [Vector2<f64>; 3]) -> Matrix2x3<f64> {

@@ -3,7 +3,6 @@
 use billow_solver::geometry::field::Field;
 use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::models::film::erected;
-use billow_solver::scene::paper;
 use billow_solver::system::{FilmSystem, PressureLoad};
 
 use super::film::flattened_bag;
@@ -11,7 +10,7 @@ use super::{
     Build, MODULUS, Parameter, Prepared, StabilityScene, THICKNESS, Values, compression, real,
     whole,
 };
-use crate::cases::Rig;
+use crate::cases::prelude::*;
 
 const OVERPRESSURE: Parameter =
     real("overpressure", 100.0, [1e-9, 1e9], "Pa", "overpressure on the inside");
