@@ -70,9 +70,14 @@ fn common_rows(run: &FilmRun, deployment: &Deployment, name: &str, ledger_band: 
     rows
 }
 
-/// The first tenth of a second with every step monitored, as tension field and with full membrane stiffness.
-fn every_step(rig: &Rig, subdivisions: u32, runs: &[(IntegratorKind, Chirality)]) -> Outcome {
+/// The first tenth of a second with every step monitored, as tension field and with full membrane stiffness, with every
+/// integrator; on the coarsest mesh with the other chirality too.
+pub(super) fn every_step(rig: &Rig, subdivisions: u32) -> Outcome {
     let monitor = MonitorSettings::EVERY_STEP;
+    let mut runs = IntegratorKind::ALL.map(|kind| (kind, Chirality::Same)).to_vec();
+    if subdivisions == 2 {
+        runs.insert(0, (IntegratorKind::Explicit, Chirality::Alternate));
+    }
     let mut judged = Vec::new();
     for (compression, key) in [(0.0, "ledger_band"), (1.0, "compressed_ledger_band")] {
         for (kind, chirality) in runs.iter().copied() {
@@ -99,18 +104,6 @@ fn every_step(rig: &Rig, subdivisions: u32, runs: &[(IntegratorKind, Chirality)]
     Ok(judged)
 }
 
-/// The coarsest capsule: both chiralities, every integrator.
-pub(super) fn capsule_every_step(rig: &Rig) -> Outcome {
-    let alternate = (IntegratorKind::Explicit, Chirality::Alternate);
-    let same = IntegratorKind::ALL.map(|kind| (kind, Chirality::Same));
-    every_step(rig, 2, &[&[alternate], &same[..]].concat())
-}
-
-/// A finer one with every integrator.
-pub(super) fn capsule_every_step_fine(rig: &Rig) -> Outcome {
-    every_step(rig, 4, &IntegratorKind::ALL.map(|kind| (kind, Chirality::Same)))
-}
-
 /// When a series first reaches a level, linear between samples; NaN if it never does.
 fn first_time_at(time: &[f64], series: &[f64], level: f64) -> f64 {
     let Some(next) = series.iter().position(|value| *value >= level) else { return f64::NAN };
@@ -126,7 +119,7 @@ fn between(quantity: &str, value: f64, entry: &str) -> Row {
 }
 
 /// 5 g/s for 0.3 s on this mesh.
-fn deployed(rig: &Rig, subdivisions: u32) -> Outcome {
+pub(super) fn deployed(rig: &Rig, subdivisions: u32) -> Outcome {
     let scene = paper::capsule(subdivisions, 0.3);
     let (run, deployment) = deploy(rig, &scene, FilmContact::default())?;
     let column = |name: &str| deployment.history.column(name);
@@ -144,16 +137,6 @@ fn deployed(rig: &Rig, subdivisions: u32) -> Outcome {
     judged.push(Row::at_least("V at the end, m3", run.volume(), least));
     judged.extend(common_rows(&run, &deployment, "", number("contact/ledger_band")));
     Ok(judged)
-}
-
-/// The deployed capsule on a coarse mesh.
-pub(super) fn capsule_deployed(rig: &Rig) -> Outcome {
-    deployed(rig, 5)
-}
-
-/// The same on a finer mesh.
-pub(super) fn capsule_deployed_fine(rig: &Rig) -> Outcome {
-    deployed(rig, 8)
 }
 
 /// The volume at the end, with half and with twice the contact distance.

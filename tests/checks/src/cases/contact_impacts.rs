@@ -72,20 +72,10 @@ pub fn films_at_50_m_s(rig: &Rig) -> Outcome {
     Ok(judged)
 }
 
-/// A bag of film without compressive stiffness: [`squeezed`].
-pub fn squeezed_bag(rig: &Rig) -> Outcome {
-    squeezed(rig, &[0.0])
-}
-
-/// Bags of film with compressive stiffness: [`squeezed`].
-pub fn squeezed_bag_stiff(rig: &Rig) -> Outcome {
-    squeezed(rig, &[0.1, 1.0])
-}
-
 /// A slack, dented bag with a little gas between plates that close to a tenth of its height, so that
 /// its walls fold. The dented shape is half the stress-free size: film with compressive stiffness
 /// springs out of it at some hundred m/s. For such film, only passages and intersections are judged.
-fn squeezed(rig: &Rig, compressions: &[f64]) -> Outcome {
+pub fn squeezed_bag(rig: &Rig, compressions: &[f64]) -> Outcome {
     let (radius, closed) = (0.2, 0.03);
     let share = number("squeezed_bag/height");
     let dented = |x: Vector3<f64>| {

@@ -77,7 +77,8 @@ fn compare(film: &FilmView<'_>, mesh: &Mesh, expected: &StaticState) -> Vec<Row>
     ]
 }
 
-fn judge(rig: &Rig, subdivisions: u32) -> Outcome {
+/// The relaxed capsule against the erected one.
+pub fn deployed_equals_inflated(rig: &Rig, subdivisions: u32) -> Outcome {
     let scene = paper::capsule(subdivisions, 1.0);
     let pressures = numbers("deployed_equals_inflated/pressures");
     let inflated = static_states(rig.instruction_set, &scene, &pressures)
@@ -113,14 +114,4 @@ pub fn end_state_polygon(rig: &Rig) -> Outcome {
         }
     }
     Ok(judged)
-}
-
-/// On a coarse mesh.
-pub fn deployed_equals_inflated(rig: &Rig) -> Outcome {
-    judge(rig, 5)
-}
-
-/// On a finer mesh.
-pub fn deployed_equals_inflated_fine(rig: &Rig) -> Outcome {
-    judge(rig, 8)
 }

@@ -117,7 +117,7 @@ pub fn stretched_disc(rig: &Rig) -> Outcome {
     for mode in drum_modes() {
         let explicit = (IntegratorKind::Explicit, CFL, SAMPLES);
         let name = format!("frequency ({},{}), Hz", mode.diameters, mode.circles);
-        judged.extend(converged([8, 16, 32], [(&name, mode.frequency)], bands, |rings| {
+        judged.extend(converged([8, 16, 32], [(name, mode.frequency)], bands, |rings| {
             Ok([drum(rig, &mode, rings, explicit)?.0])
         })?);
     }
@@ -136,11 +136,10 @@ pub fn spinning_disc(rig: &Rig) -> Outcome {
     let [radius, rate, share, band] =
         entry("spinning_disc", ["radius", "rate", "amplitude", "band"]);
     let film = Film::PAPER_ELASTIC;
-    let mut judged = Vec::new();
-    for row in rows("spinning_disc") {
+    each("spinning_disc", |row| {
         let (diameters, expected) = (row[0], row[2]);
         let quantity = format!("p/Omega of mode ({diameters},{})", row[1]);
-        judged.extend(refined([4, 8, 16], [(&quantity, expected, band)], None, |rings| {
+        refined([4, 8, 16], [(quantity, expected, band)], None, |rings| {
             let mut shell = disc(rings, radius);
             let shape: Vec<f64> = shell
                 .positions
@@ -167,7 +166,6 @@ pub fn spinning_disc(rig: &Rig) -> Outcome {
             let mut film = displaced(rig, scene, &shape, share * radius, explicit)?;
             let found = ringing_frequency(&mut film, &shape, (period / 400.0, 3))?;
             Ok([found * TAU / rate])
-        })?);
-    }
-    Ok(judged)
+        })
+    })
 }

@@ -24,4 +24,4 @@ pub use super::Outcome;
 pub use super::contact_rig::{monitored_contact, plate, run_recorded};
 pub use super::reference::{entry, number, numbers, rows};
 pub use super::rig::{Rig, advance, compliant, equilibrium, held, inflated, mean};
-pub use super::row::{Row, refined, worse};
+pub use super::row::{Row, each, refined, worse};

@@ -1,5 +1,8 @@
 //! One quantity of a case, compared with its reference.
 
+use super::Outcome;
+use super::reference::rows;
+
 /// One quantity and its verdict.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
@@ -58,16 +61,8 @@ impl Row {
 
     /// The row of a case that failed to run.
     pub fn failed(reason: &str) -> Self {
-        Self {
-            quantity: "run".to_owned(),
-            value: f64::NAN,
-            reference: None,
-            error: f64::NAN,
-            band: 0.0,
-            order: None,
-            pass: false,
-            note: reason.to_owned(),
-        }
+        let note = reason.to_owned();
+        Self { note, ..Self::judged("run", f64::NAN, None, f64::NAN, 0.0) }
     }
 
     /// With an observed order, for information.
@@ -98,26 +93,23 @@ impl Row {
         self
     }
 
-    /// The value of the finest of three steps or meshes, each half of the one before. The observed order of the last two
-    /// is reported, and the errors of all.
-    pub fn refined(quantity: &str, values: [f64; 3], reference: f64, band: f64) -> Self {
-        let errors = values.map(|value| value / reference - 1.0);
-        let row = Self::new(quantity, values[2], reference, band);
-        row.with_order(order(errors[1], errors[2])).with_errors(errors)
-    }
-
-    /// The same, where both observed orders must be `least` or more.
-    pub fn converging(
+    /// The value of the finest of three steps or meshes, each half of the one before, and the errors of all. With `least`,
+    /// both observed orders must be that or more; otherwise the last one is reported.
+    pub fn refined(
         quantity: &str,
         values: [f64; 3],
         reference: f64,
         band: f64,
-        least: f64,
+        least: Option<f64>,
     ) -> Self {
         let errors = values.map(|value| value / reference - 1.0);
-        let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
+        let last = order(errors[1], errors[2]);
         let row = Self::new(quantity, values[2], reference, band);
-        row.with_least_order(seen, least).with_errors(errors)
+        let row = match least {
+            Some(least) => row.with_least_order(order(errors[0], errors[1]).min(last), least),
+            None => row.with_order(last),
+        };
+        row.with_errors(errors)
     }
 
     /// With the signed errors of three steps or meshes as a note.
@@ -127,43 +119,46 @@ impl Row {
     }
 }
 
-/// The rows of quantities (name, reference, band) on three steps or meshes, each half as coarse as the one before. With
-/// `least`, every observed order must be that or more; otherwise the last one is reported.
-pub fn refined<const N: usize>(
+/// The rows of every entry of a table of reference numbers.
+pub fn each(table: &str, of_entry: impl FnMut(Vec<f64>) -> Outcome) -> Outcome {
+    Ok(rows(table).into_iter().map(of_entry).collect::<Result<Vec<_>, _>>()?.concat())
+}
+
+/// The rows of quantities (name, reference, band) on three steps or meshes, each half as coarse as the one before:
+/// [`Row::refined`].
+pub fn refined<S: AsRef<str>, const N: usize>(
     meshes: [u32; 3],
-    quantities: [(&str, f64, f64); N],
+    quantities: [(S, f64, f64); N],
     least: Option<f64>,
     mut run: impl FnMut(u32) -> Result<[f64; N], String>,
-) -> Result<Vec<Row>, String> {
+) -> Outcome {
     let found = [run(meshes[0])?, run(meshes[1])?, run(meshes[2])?];
-    let row = |(index, (name, reference, band)): (usize, (&str, f64, f64))| {
+    let row = |(index, (name, reference, band)): (usize, &(S, f64, f64))| {
         let values = found.map(|values| values[index]);
-        match least {
-            Some(least) => Row::converging(name, values, reference, band, least),
-            None => Row::refined(name, values, reference, band),
-        }
+        Row::refined(name.as_ref(), values, *reference, *band, least)
     };
-    Ok(quantities.into_iter().enumerate().map(row).collect())
+    Ok(quantities.iter().enumerate().map(row).collect())
 }
 
 /// The rows of quantities (name, reference) of taut film, of second order: the value of the finest of three meshes with
 /// the least order, and Richardson's extrapolation. Bands of both, and the least order.
-pub fn converged<const N: usize>(
+pub fn converged<S: AsRef<str>, const N: usize>(
     meshes: [u32; 3],
-    quantities: [(&str, f64); N],
+    quantities: [(S, f64); N],
     [raw, band, least]: [f64; 3],
     mut run: impl FnMut(u32) -> Result<[f64; N], String>,
-) -> Result<Vec<Row>, String> {
+) -> Outcome {
     let found = [run(meshes[0])?, run(meshes[1])?, run(meshes[2])?];
-    let rows = |(index, (name, reference)): (usize, (&str, f64))| {
-        let values = found.map(|values| values[index]);
+    let rows = |(index, (name, reference)): (usize, &(S, f64))| {
+        let (name, values) = (name.as_ref(), found.map(|values| values[index]));
         let limit = (4.0 * values[2] - values[1]) / 3.0;
+        let finest = format!("{name}, finest mesh");
         [
-            Row::converging(&format!("{name}, finest mesh"), values, reference, raw, least),
-            Row::new(&format!("{name}, Richardson"), limit, reference, band),
+            Row::refined(&finest, values, *reference, raw, Some(least)),
+            Row::new(&format!("{name}, Richardson"), limit, *reference, band),
         ]
     };
-    Ok(quantities.into_iter().enumerate().flat_map(rows).collect())
+    Ok(quantities.iter().enumerate().flat_map(rows).collect())
 }
 
 /// The larger of two errors. NaN counts as the largest, unlike in `f64::max`.

@@ -77,33 +77,17 @@ pub fn breathing_frequency(
     frequency(film, interval, HALF_PERIODS + 1, |film| film.state.volume - volume)
 }
 
-/// Frequency of the radial mode, Hz.
-fn radial_frequency(rig: &Rig, level: u32, pressure: f64) -> Result<f64, String> {
-    let explicit = (IntegratorKind::Explicit, None);
-    let (mut film, volume) = breathing_start(rig, level, pressure, explicit)?;
-    breathing_frequency(&mut film, volume, None)
-}
-
 /// The radial mode about equilibrium, at two pressures.
-pub fn breathing_sphere(rig: &Rig) -> Outcome {
-    breathing(rig, [2, 3, 4])
-}
-
-/// The same on finer meshes.
-pub fn breathing_sphere_fine(rig: &Rig) -> Outcome {
-    breathing(rig, [3, 4, 5])
-}
-
-fn breathing(rig: &Rig, levels: [u32; 3]) -> Outcome {
+pub fn breathing_sphere(rig: &Rig, levels: [u32; 3]) -> Outcome {
     let bands = entry("breathing_sphere", ["raw_band", "band", "order"]);
-    let mut judged = Vec::new();
-    for row in rows("breathing_sphere") {
+    each("breathing_sphere", |row| {
         let quantity = format!("frequency at {} Pa, Hz", row[0]);
-        judged.extend(converged(levels, [(&quantity, row[1])], bands, |level| {
-            Ok([radial_frequency(rig, level, row[0])?])
-        })?);
-    }
-    Ok(judged)
+        converged(levels, [(quantity, row[1])], bands, |level| {
+            let explicit = (IntegratorKind::Explicit, None);
+            let (mut film, volume) = breathing_start(rig, level, row[0], explicit)?;
+            Ok([breathing_frequency(&mut film, volume, None)?])
+        })
+    })
 }
 
 /// Largest λ − 1 and period (s) of a sphere released unstretched. Its gas has this pressure (Pa) at

@@ -18,8 +18,7 @@ const THICKNESS: f64 = 1e-4;
 /// Height, volume and membrane force of a clamped disc under pressure.
 pub fn clamped_disc(rig: &Rig) -> Outcome {
     let [size, force, least] = entry("clamped_disc", ["size_band", "force_band", "order"]);
-    let mut judged = Vec::new();
-    for row in rows("clamped_disc") {
+    each("clamped_disc", |row| {
         let (radius, pressure) = (row[0], row[3]);
         let film = Film {
             youngs_modulus: row[1] / THICKNESS,
@@ -27,11 +26,10 @@ pub fn clamped_disc(rig: &Rig) -> Outcome {
             thickness: THICKNESS,
             ..Film::PAPER_ELASTIC
         };
-        let names =
-            ["w0, m", "volume, m3", "N0, N/m"].map(|name| format!("{name}, at {pressure} Pa"));
-        let bands = [size, size, force];
-        let quantities = [0, 1, 2].map(|index| (&*names[index], row[4 + index], bands[index]));
-        judged.extend(refined([8, 16, 32], quantities, Some(least), |rings| {
+        let quantities =
+            [("w0, m", row[4], size), ("volume, m3", row[5], size), ("N0, N/m", row[6], force)]
+                .map(|(name, value, band)| (format!("{name}, at {pressure} Pa"), value, band));
+        refined([8, 16, 32], quantities, Some(least), |rings| {
             let supports = vec![held(disc_rim(rings), "xyz")];
             let state = inflated(rig, disc(rings, radius), film, pressure, supports)?;
             // The first six elements surround the centre.
@@ -41,39 +39,35 @@ pub fn clamped_disc(rig: &Rig) -> Outcome {
             };
             let middle = (0..6).map(mean_force).sum::<f64>() / 6.0;
             Ok([state.positions.z[0], state.volume, middle])
-        })?);
-    }
-    Ok(judged)
+        })
+    })
 }
 
 /// Height and volume of a disc of compliant film held at its rim.
 pub fn compliant_disc(rig: &Rig) -> Outcome {
     let [radius, band] = entry("compliant", ["bottom_radius", "band"]);
-    let mut judged = Vec::new();
-    for row in rows("compliant/disc") {
+    each("compliant/disc", |row| {
         let (film, pressure, name) = compliant(&row);
-        let [height, volume] = ["height, m", "volume, m3"].map(|what| format!("{what}, {name}"));
-        let quantities = [(&*height, row[3], band), (&*volume, row[4], band)];
-        judged.extend(refined([8, 16, 32], quantities, None, |rings| {
+        let quantities = [("height, m", row[3]), ("volume, m3", row[4])]
+            .map(|(what, value)| (format!("{what}, {name}"), value, band));
+        refined([8, 16, 32], quantities, None, |rings| {
             let supports = vec![held(disc_rim(rings), "xyz")];
             let state = inflated(rig, disc(rings, radius), film, pressure, supports)?;
             Ok([state.positions.z[0], state.volume])
-        })?);
-    }
-    Ok(judged)
+        })
+    })
 }
 
 /// Radius, thickness and volume of the balloon.
 pub fn mylar_balloon(rig: &Rig) -> Outcome {
     let radius = number("mylar_balloon/radius");
     let [size, bulk] = entry("mylar_balloon", ["size_band", "volume_band"]);
-    let mut judged = Vec::new();
-    for row in rows("mylar_balloon") {
+    each("mylar_balloon", |row| {
         let pressure = row[0];
-        let names = ["r/a", "thickness/a", "V/a3"].map(|name| format!("{name} at {pressure} Pa"));
-        let bands = [size, size, bulk];
-        let quantities = [0, 1, 2].map(|index| (&*names[index], row[1 + index], bands[index]));
-        judged.extend(refined([8, 16, 32], quantities, None, |rings| {
+        let quantities =
+            [("r/a", row[1], size), ("thickness/a", row[2], size), ("V/a3", row[3], bulk)]
+                .map(|(name, value, band)| (format!("{name} at {pressure} Pa"), value, band));
+        refined([8, 16, 32], quantities, None, |rings| {
             let around = 3 * rings;
             let rim = ring_nodes(0, around);
             let (shell, supports) =
@@ -85,7 +79,6 @@ pub fn mylar_balloon(rig: &Rig) -> Outcome {
             let pole = state.positions.get(state.positions.len() - 1);
             let cube = radius * radius * radius;
             Ok([rim / radius, 2.0 * pole.z / radius, 2.0 * state.volume / cube])
-        })?);
-    }
-    Ok(judged)
+        })
+    })
 }

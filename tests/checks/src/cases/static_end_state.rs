@@ -62,17 +62,19 @@ fn judge(
     differences: bool,
 ) -> Outcome {
     let (rows, bands) = (rows("end_state"), numbers("end_state/bands"));
-    let mut names = Vec::new();
-    for (which, row) in rows.iter().enumerate() {
-        let at = |index: usize| format!("{}, at {} Pa", SIZES[index], row[0]);
-        names.extend((0..5).map(|index| (at(index), rows[which][1 + index], bands[index])));
-    }
     let band = if differences { number("end_state/difference_band") } else { f64::INFINITY };
-    let name = |index: usize| format!("{}, {} less {} Pa", SIZES[index], rows[1][0], rows[0][0]);
-    names.extend((0..5).map(|index| (name(index), rows[1][1 + index] - rows[0][1 + index], band)));
-    let quantities: [(&str, f64, f64); 15] = core::array::from_fn(|index| {
-        let (name, expected, band) = &names[index];
-        (&**name, *expected, *band)
+    let quantities: [(String, f64, f64); 15] = core::array::from_fn(|index| {
+        let (size, [low, high]) = (index % 5, [0, 1].map(|row: usize| rows[row][1 + index % 5]));
+        let at = |row: usize| format!("{}, at {} Pa", SIZES[size], rows[row][0]);
+        match index / 5 {
+            0 => (at(0), low, bands[size]),
+            1 => (at(1), high, bands[size]),
+            _ => (
+                format!("{}, {} less {} Pa", SIZES[size], rows[1][0], rows[0][0]),
+                high - low,
+                band,
+            ),
+        }
     });
     let mut judged = refined([8, 16, 32], quantities, None, |fine| {
         let [low, high] = inflate(rig, &mesh(fine)?)?;
@@ -112,17 +114,15 @@ pub fn pattern(rig: &Rig) -> Outcome {
 pub fn compliant_capsule(rig: &Rig) -> Outcome {
     let [bottom, top, height] = entry("compliant", ["bottom_radius", "top_radius", "height"]);
     let band = number("compliant/band");
-    let mut judged = Vec::new();
-    for row in rows("compliant/capsule") {
+    each("compliant/capsule", |row| {
         let (film, pressure, name) = compliant(&row);
-        let names = [0, 3, 4].map(|index: usize| format!("{}, {name}", SIZES[index]));
-        let quantities = [0, 1, 2].map(|index| (&*names[index], row[3 + index], band));
-        judged.extend(refined([4, 8, 16], quantities, None, |fine| {
+        let quantities = [(0, row[3]), (3, row[4]), (4, row[5])]
+            .map(|(size, value): (usize, f64)| (format!("{}, {name}", SIZES[size]), value, band));
+        refined([4, 8, 16], quantities, None, |fine| {
             let capsule = capped_frustum(fine, [bottom, top], height);
             let state = inflated(rig, capsule.shell.clone(), film, pressure, Vec::new())?;
             let [volume, _, _, rims, poles] = sizes(&state, &capsule);
             Ok([volume, rims, poles])
-        })?);
-    }
-    Ok(judged)
+        })
+    })
 }

@@ -17,19 +17,17 @@ use super::prelude::*;
 /// Stretch of a sphere.
 pub fn sphere(rig: &Rig) -> Outcome {
     let [radius, band, least] = entry("static_sphere", ["radius", "band", "order"]);
-    let mut judged = Vec::new();
-    for row in rows("static_sphere") {
+    each("static_sphere", |row| {
         let (pressure, expected) = (row[0], row[1]);
         let quantity = format!("lambda - 1 at {pressure} Pa");
-        judged.extend(refined([2, 3, 4], [(&quantity, expected, band)], Some(least), |level| {
+        refined([2, 3, 4], [(quantity, expected, band)], Some(least), |level| {
             let shell = icosphere(level, radius);
             let unloaded: f64 = shell.positions.iter().map(Vector3::norm).sum();
             let state = inflated(rig, shell, Film::PAPER_ELASTIC, pressure, Vec::new())?;
             let loaded: f64 = state.positions.iter().map(|x| x.norm()).sum();
             Ok([loaded / unloaded - 1.0])
-        })?);
-    }
-    Ok(judged)
+        })
+    })
 }
 
 /// The side of a frustum with these radii (m, bottom and top) and this height (m).
@@ -106,9 +104,8 @@ pub fn cone(rig: &Rig) -> Outcome {
         Ok(sum.map(|sum| sum / count))
     };
     let names = ["N_hoop", "N_meridional"];
-    let quantities = ["N_hoop/(closed form), mean", "N_meridional/(closed form), mean"];
-    let mut judged =
-        refined([12, 24, 48], quantities.map(|name| (name, 1.0, band)), None, &mut run)?;
+    let quantities = names.map(|name| (format!("{name}/(closed form), mean"), 1.0, band));
+    let mut judged = refined([12, 24, 48], quantities, None, &mut run)?;
     for (name, largest) in names.into_iter().zip(largest) {
         judged.push(Row::at_most(&format!("{name}, largest error of an element"), largest, band));
     }
@@ -119,22 +116,21 @@ pub fn cone(rig: &Rig) -> Outcome {
 pub fn compliant_frustum(rig: &Rig) -> Outcome {
     let [bottom, top, height] = entry("compliant", ["bottom_radius", "top_radius", "height"]);
     let band = number("compliant/band");
-    let mut judged = Vec::new();
-    for row in rows("compliant/frustum") {
+    each("compliant/frustum", |row| {
         let (film, pressure, name) = compliant(&row);
-        let [radius, volume] =
-            ["largest radius, m", "volume, m3"].map(|what| format!("{what}, {name}"));
-        let quantities = [(&*radius, row[3], band), (&*volume, row[4], band)];
-        judged.extend(refined([8, 16, 32], quantities, None, |along| {
+        let quantities = [
+            (format!("largest radius, m, {name}"), row[3], band),
+            (format!("volume, m3, {name}"), row[4], band),
+        ];
+        refined([8, 16, 32], quantities, None, |along| {
             let around = 3 * along;
             let shell = side(along, around, [bottom, top], height, true);
             let rims = [0, along].map(|ring| held(ring_nodes(ring, around), "xyz"));
             let state = inflated(rig, shell, film, pressure, rims.to_vec())?;
             let radius = |ring: u32| mean(&state, &ring_nodes(ring, around), |x| x.xy().norm());
             Ok([largest(&(0..=along).map(radius).collect::<Vec<_>>()), state.volume])
-        })?);
-    }
-    Ok(judged)
+        })
+    })
 }
 
 /// Top of the parabola through the largest of some values and its neighbours.

@@ -64,15 +64,13 @@ fn bend(rig: &Rig, rows: u32, requested: f64) -> Result<f64, String> {
 /// The strip in bending.
 pub fn beam(rig: &Rig) -> Outcome {
     let band = number("beam/band");
-    let mut judged = Vec::new();
-    for row in rows("beam") {
+    each("beam", |row| {
         let (requested, expected) = (row[0], row[1]);
         let quantity = format!("2M/(P h) at k {requested}");
-        judged.extend(refined([8, 16, 32], [(&quantity, expected, band)], None, |rows| {
+        refined([8, 16, 32], [(quantity, expected, band)], None, |rows| {
             bend(rig, rows, requested).map(|moment| [moment])
-        })?);
-    }
-    Ok(judged)
+        })
+    })
 }
 
 /// Torque and wrinkle radius of an annulus in torsion by this angle, rad.
@@ -122,7 +120,7 @@ pub fn annulus_torsion(rig: &Rig) -> Outcome {
         let quantity = format!("torque at {angle} rad, N m");
         let mut wrinkle = f64::NAN;
         let meshes = [finest / 4, finest / 2, finest];
-        judged.extend(refined(meshes, [(&quantity, torque, band)], None, |rings| {
+        judged.extend(refined(meshes, [(quantity, torque, band)], None, |rings| {
             let [torque, found] = twist(rig, rings, angle)?;
             wrinkle = found;
             Ok([torque])
