@@ -17,21 +17,11 @@ mod kinds;
 
 use std::process::ExitCode;
 
+use clap::Parser;
 use harness::options::Options;
 
 fn main() -> ExitCode {
-    let options = match Options::from_arguments(std::env::args().skip(1)) {
-        Ok(Some(options)) => options,
-        Ok(None) => {
-            println!("{}", Options::help(&kinds::NAMES));
-            return ExitCode::SUCCESS;
-        }
-        Err(problem) => {
-            eprintln!("torture: {problem}\n  next: see the options with --help");
-            return ExitCode::from(2);
-        }
-    };
-    match harness::runner::run(&options) {
+    match harness::runner::run(&Options::parse()) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,
         Err(problem) => {

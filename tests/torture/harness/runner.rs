@@ -1,10 +1,9 @@
-//! Runs the trials, shows progress, names bad trials.
+//! Runs the trials, names bad trials.
 
 use std::fs;
-use std::io::{IsTerminal, Write};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::options::Options;
 use super::place::Place;
@@ -12,9 +11,6 @@ use super::random::Random;
 use super::tally::{self, Tally};
 use super::trial::{Kind, Trial};
 use crate::kinds;
-
-/// Pause between two lines of progress that are not on a terminal.
-const PROGRESS_PAUSE: Duration = Duration::from_secs(30);
 
 /// Runs all chosen kinds and prints the table. Returns whether every trial is good.
 pub fn run(options: &Options) -> Result<bool, String> {
@@ -28,7 +24,8 @@ pub fn run(options: &Options) -> Result<bool, String> {
     for name in chosen {
         tallies.push(run_kind(options, name)?);
     }
-    println!("\n{}", tally::table(&tallies));
+    println!();
+    tally::print(&tallies).map_err(|error| error.to_string())?;
     let bad: usize = tallies.iter().map(Tally::bad).sum();
     let share = options.share;
     println!("{bad} faults; seed {}, share {share}, {:.0?}", options.seed, started.elapsed());
@@ -67,22 +64,26 @@ fn chosen_numbers(all: usize, share: f64) -> Vec<usize> {
 
 fn run_trials(options: &Options, kind: &dyn Kind, name: &str, numbers: &[usize]) -> Tally {
     let next = AtomicUsize::new(0);
-    let state = Mutex::new((Tally::new(name, kind.limit()), Progress::new(name, numbers.len())));
-    let threads = if kind.parallel() { options.threads } else { 1 };
+    let tally = Mutex::new(Tally::new(name, kind.limit()));
+    println!("{name}: {} trials", numbers.len());
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    let asked = options.threads.map_or_else(cores, usize::from);
+    let threads = if kind.parallel() { asked } else { 1 };
     std::thread::scope(|scope| {
         for _ in 0..threads {
             scope.spawn(|| {
                 while let Some(number) = numbers.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let trial = one_trial(options, kind, name, *number);
-                    let mut state = state.lock().expect("no thread panicked");
-                    let (tally, progress) = &mut *state;
+                    let mut tally = tally.lock().expect("no thread panicked");
                     tally.add(&trial);
-                    progress.step(options, *number, &trial);
+                    if !trial.faults.is_empty() {
+                        name_bad(options, name, *number, &trial);
+                    }
                 }
             });
         }
     });
-    state.into_inner().expect("no thread panicked").0
+    tally.into_inner().expect("no thread panicked")
 }
 
 fn one_trial(options: &Options, kind: &dyn Kind, name: &str, number: usize) -> Trial {
@@ -102,55 +103,14 @@ fn one_trial(options: &Options, kind: &dyn Kind, name: &str, number: usize) -> T
     trial
 }
 
-/// The line of progress of a kind.
-struct Progress {
-    name: String,
-    total: usize,
-    done: usize,
-    bad: usize,
-    started: Instant,
-    last: Instant,
-}
-
-impl Progress {
-    fn new(name: &str, total: usize) -> Self {
-        let now = Instant::now();
-        Self { name: name.to_owned(), total, done: 0, bad: 0, started: now, last: now }
+/// Names a bad trial, and how to repeat it.
+fn name_bad(options: &Options, kind: &str, number: usize, trial: &Trial) {
+    let seed = options.seed;
+    println!("bad: {kind} {number} (seed {seed}): {}", trial.what);
+    for (fault, text) in &trial.faults {
+        println!("  {}: {text}", fault.name());
     }
-
-    fn step(&mut self, options: &Options, number: usize, trial: &Trial) {
-        self.done += 1;
-        let mut out = std::io::stdout().lock();
-        if !trial.faults.is_empty() {
-            self.bad += 1;
-            let seed = options.seed;
-            let folder = options.folder.join(&self.name).join(number.to_string());
-            let _ = writeln!(out, "\rbad: {} {number} (seed {seed}): {}", self.name, trial.what);
-            for (fault, text) in &trial.faults {
-                let _ = writeln!(out, "  {}: {text}", fault.name());
-            }
-            let _ = writeln!(
-                out,
-                "  again: make torture TORTURE='--only {} --number {number} --seed {seed}'; files: {}",
-                self.name,
-                folder.display()
-            );
-        }
-        let line = format!(
-            "{}: {} of {} trials, {} bad, {:.0?}",
-            self.name,
-            self.done,
-            self.total,
-            self.bad,
-            self.started.elapsed()
-        );
-        let finished = self.done == self.total;
-        if out.is_terminal() {
-            let _ = write!(out, "\r{line}{}", if finished { "\n" } else { "" });
-            let _ = out.flush();
-        } else if finished || self.last.elapsed() > PROGRESS_PAUSE {
-            self.last = Instant::now();
-            let _ = writeln!(out, "{line}");
-        }
-    }
+    let folder = options.folder.join(kind).join(number.to_string());
+    let again = format!("--only {kind} --number {number} --seed {seed}");
+    println!("  again: make torture TORTURE='{again}'; files: {}", folder.display());
 }

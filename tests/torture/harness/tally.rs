@@ -1,8 +1,12 @@
 //! The table at the end.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::time::Duration;
+
+use billow_study::cli::Format;
+use billow_study::cli::print::print_rows;
+use billow_study::input::value::Value;
+use billow_study::platform::error::Result;
 
 use super::trial::{Fault, Trial};
 
@@ -67,58 +71,29 @@ impl Tally {
         self.faults.iter().sum()
     }
 
-    fn cells(&self) -> Vec<String> {
-        let mut cells = vec![
-            self.kind.clone(),
-            self.trials.to_string(),
-            self.detected.to_string(),
-            self.survived.to_string(),
+    fn cells(&self) -> Vec<Value> {
+        let mut cells: Vec<Value> = vec![
+            self.kind.as_str().into(),
+            self.trials.into(),
+            self.detected.into(),
+            self.survived.into(),
         ];
-        cells.extend(self.faults.iter().map(ToString::to_string));
-        let longest = match self.longest {
-            Duration::ZERO => "-".to_owned(),
-            longest => format!("{:.2}", longest.as_secs_f64()),
-        };
-        cells.extend([longest, format!("{:.0}", self.limit.as_secs_f64()), self.notes()]);
-        cells
-    }
-
-    fn notes(&self) -> String {
-        let mut notes = Vec::new();
-        if !self.note.is_empty() {
-            notes.push(self.note.clone());
-        }
+        cells.extend(self.faults.iter().map(|number| Value::from(*number)));
+        let mut notes: Vec<String> = vec![self.note.clone()];
+        notes.retain(|note| !note.is_empty());
         notes.extend(self.counts.iter().map(|(name, number)| format!("{number} {name}")));
         notes.extend(self.skipped.iter().map(|(why, number)| format!("{number} skipped: {why}")));
-        notes.join("; ")
+        let longest = format!("{:.2}", self.longest.as_secs_f64());
+        cells.extend([longest.into(), self.limit.as_secs().into(), notes.join("; ").into()]);
+        cells
     }
 }
 
-/// The table as Markdown with aligned columns.
-pub fn table(tallies: &[Tally]) -> String {
-    let mut rows = vec![head()];
-    rows.extend(tallies.iter().map(Tally::cells));
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
-    let widths: Vec<usize> = (0..rows[0].len()).map(|column| width(column).unwrap_or(0)).collect();
-    let mut text = String::new();
-    for (number, row) in rows.iter().enumerate() {
-        for (cell, width) in row.iter().zip(&widths) {
-            let _ = write!(text, "| {cell:<width$} ");
-        }
-        text += "|\n";
-        if number == 0 {
-            for width in &widths {
-                let _ = write!(text, "|{}", "-".repeat(width + 2));
-            }
-            text += "|\n";
-        }
-    }
-    text
-}
-
-fn head() -> Vec<String> {
-    let mut head: Vec<&str> = vec!["kind", "trials", "detected", "survived"];
-    head.extend(Fault::ALL.map(Fault::name));
-    head.extend(["longest (s)", "limit (s)", "notes"]);
-    head.into_iter().map(ToOwned::to_owned).collect()
+/// Prints one row for each kind.
+pub fn print(tallies: &[Tally]) -> Result<()> {
+    let mut columns = vec!["kind", "trials", "detected", "survived"];
+    columns.extend(Fault::ALL.map(Fault::name));
+    columns.extend(["longest (s)", "limit (s)", "notes"]);
+    let rows: Vec<Vec<Value>> = tallies.iter().map(Tally::cells).collect();
+    print_rows(&columns, &rows, Format::Table, &mut std::io::stdout().lock())
 }

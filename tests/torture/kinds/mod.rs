@@ -5,7 +5,6 @@ use crate::harness::trial::Kind;
 
 mod checkpoints;
 mod corruptions;
-mod disk;
 mod kill9;
 mod memory;
 mod mutations;
@@ -14,11 +13,10 @@ mod streams;
 mod system_calls;
 
 /// Names of the kinds, in the order of the table.
-pub const NAMES: [&str; 9] = [
+pub const NAMES: [&str; 8] = [
     "kill9",
     "signals",
     "system_calls",
-    "disk",
     "corruptions",
     "checkpoints",
     "memory",
@@ -27,16 +25,12 @@ pub const NAMES: [&str; 9] = [
 ];
 
 /// Prepares a kind in a place that lives as long as its trials.
-///
-/// # Errors
-/// Why the kind cannot be tried here.
 pub fn prepare(name: &str, place: &Place) -> Result<Box<dyn Kind>, String> {
     Ok(match name {
         "kill9" => Box::new(kill9::prepare(place)?),
         "signals" => Box::new(signals::prepare(place)?),
-        "system_calls" => system_calls::prepare(place)?,
+        "system_calls" => Box::new(system_calls::prepare(place)?),
         "streams" => Box::new(streams::prepare(place)?),
-        "disk" => Box::new(disk::prepare(place)?),
         "corruptions" => Box::new(corruptions::prepare(place)?),
         "checkpoints" => Box::new(checkpoints::prepare(place)?),
         "memory" => Box::new(memory::prepare(place)),

@@ -47,8 +47,8 @@ pub struct SystemCalls {
 }
 
 /// Compiles the library and counts the calls of an undisturbed run.
-pub fn prepare(place: &Place) -> Result<Box<dyn Kind>, String> {
-    let Some(shim) = compile(place) else { return Ok(Box::new(NoCompiler)) };
+pub fn prepare(place: &Place) -> Result<SystemCalls, String> {
+    let shim = compile(place).ok_or("cc is needed, to disturb system calls")?;
     place.write_study(&studies::small());
     let letters_of = |kinds: &str| {
         let _ = fs::remove_dir_all(place.results());
@@ -62,7 +62,7 @@ pub fn prepare(place: &Place) -> Result<Box<dyn Kind>, String> {
     let letters = letters_of("")?;
     let truth = Truth::read(place).map_err(|finish| finish.said())?;
     let disturbances = disturbances(&letters, creations, opens);
-    Ok(Box::new(SystemCalls { truth, shim, disturbances, calls: letters.len() }))
+    Ok(SystemCalls { truth, shim, disturbances, calls: letters.len() })
 }
 
 fn disturbances(letters: &[u8], creations: usize, opens: usize) -> Vec<Disturbance> {
@@ -161,21 +161,4 @@ impl Kind for SystemCalls {
 
 fn names_results(finish: &Finish) -> bool {
     finish.stderr.contains("results/s") || finish.stderr.contains("results:")
-}
-
-/// The kind on a machine without a C compiler.
-struct NoCompiler;
-
-impl Kind for NoCompiler {
-    fn trials(&self) -> usize {
-        1
-    }
-
-    fn limit(&self) -> Duration {
-        LIMIT
-    }
-
-    fn trial(&self, _: usize, _: &mut Random, _: &Place) -> Trial {
-        Trial { skipped: Some("no C compiler".to_owned()), ..Trial::default() }
-    }
 }

@@ -7,56 +7,32 @@ use crate::harness::random::Random;
 /// Changes of one file, at most.
 const MAX_CHANGES: usize = 3;
 /// Numbers that are put in.
-const NUMBERS: [f64; 22] = [
+const NUMBERS: [f64; 16] = [
     0.0,
     -0.0,
     -1.0,
     1.0,
     2.0,
     3.0,
-    5.0,
     7.0,
     0.5,
     1e-3,
     1e3,
-    1e6,
     1e9,
     1e20,
     -1e20,
-    1e-20,
     1e-308,
     5e-324,
     f64::MAX,
-    4_294_967_296.0,
-    9_007_199_254_740_993.0,
-    1e-9,
 ];
 /// Factors of a number that stands there.
 const SCALES: [f64; 13] = [-1.0, 0.0, 1e-6, 1e-3, 0.1, 0.5, 0.999, 1.001, 1.1, 2.0, 10.0, 1e3, 1e6];
 /// Whole numbers up to this one have no other neighbour in `f64`.
 const MAX_WHOLE: f64 = 9e15;
 /// Texts that are put in.
-const TEXTS: [&str; 20] = [
-    "",
-    " ",
-    "1",
-    "1 m",
-    "1e999 m",
-    "-1 g/s",
-    "1 m/",
-    "NaN",
-    "inf",
-    "0",
-    "1 parsec",
-    "../../etc",
-    "\u{0}",
-    "\u{202e}m",
-    "𝟙 m",
-    "${x}",
-    "2 * 3",
-    "1 / 0",
-    "film",
-    "1;2",
+const TEXTS: [&str; 15] = [
+    "", " ", "1", "1 m", "1e999 m", "-1 g/s", "1 m/", "NaN", "inf", "1 parsec", "\u{0}", "𝟙 m",
+    "${x}", "1 / 0", "film",
 ];
 /// Members of a long list.
 const LONG: usize = 3_000;

@@ -6,25 +6,9 @@ use crate::harness::random::Random;
 /// Changes of one file, at most.
 const MAX_CHANGES: usize = 4;
 /// Words that take the place of a number.
-const WORDS: [&str; 18] = [
-    "0",
-    "-1",
-    "-9999",
-    "99999999999",
-    "1e308",
-    "-1e308",
-    "1e-308",
-    "1e400",
-    "nan",
-    "inf",
-    "",
-    "x",
-    "1//1",
-    "1/2/3",
-    "1.5",
-    "4294967297",
-    "1e9",
-    "\u{1}",
+const WORDS: [&str; 14] = [
+    "0", "-1", "-9999", "1e308", "-1e308", "1e-308", "1e400", "nan", "inf", "", "x", "1//1",
+    "1/2/3", "\u{1}",
 ];
 /// Whole lines that are put in.
 const LINES: [&str; 10] =
