@@ -99,24 +99,6 @@ fn a_wrong_expectation_and_a_wrong_limit_are_reported() {
 }
 
 #[test]
-fn models_and_every_integrator_run_a_capsule() {
-    let maps = json!({"maps": [{
-        "name": "flow", "scene": "capsule", "axes": [["mass_flow_rate", [5e-3]]]
-    }]});
-    let folder = folder(&maps);
-    let output = folder.run(&[&RUN[..], &["--format", "json", "--no-pictures"]].concat());
-    let rows: Vec<Value> = serde_json::from_slice(&output.stdout).unwrap();
-    let methods: Vec<&str> = rows.iter().filter_map(|row| row["method"].as_str()).collect();
-    assert!(methods.starts_with(&["explicit"]), "{methods:?}");
-    assert!(methods.ends_with(&["piston", "storeys"]), "{methods:?}");
-    let of = |method: &str| rows.iter().find(|row| row["method"] == method).unwrap();
-    for method in ["explicit", "piston", "storeys"] {
-        assert_eq!(of(method)["status"], "done", "{method}");
-        assert!(of(method)["steps"].as_u64().unwrap() > 0);
-    }
-}
-
-#[test]
 fn film_of_two_materials_has_the_limit_of_the_stiff_one_and_statics_is_a_method() {
     let maps = json!({"maps": [
         {"name": "soft", "scene": "sheet", "methods": ["explicit"], "axes": [["step", [1, 1.5]], ["soft", [1e-4]]],
@@ -125,11 +107,15 @@ fn film_of_two_materials_has_the_limit_of_the_stiff_one_and_statics_is_a_method(
         {"name": "contact", "scene": "films", "methods": ["explicit"], "axes": [["soft", [1e-4, 1]]]},
         {"name": "bag", "scene": "bag_statics", "axes": [["flatness", [0, 1]]],
          "expect": [{"where": {"flatness": 0}, "status": ["no_equilibrium", "done"]}]},
-        {"name": "capsule", "scene": "capsule_statics", "axes": [["overpressure", [100]]]}
+        {"name": "capsule", "scene": "capsule_statics", "axes": [["overpressure", [100]]]},
+        {"name": "flow", "scene": "capsule", "methods": ["explicit", "piston", "storeys"],
+         "axes": [["mass_flow_rate", [5e-3]]]}
     ]});
     let folder = folder(&maps);
     let printed = folder.stdout(&RUN);
-    for text in ["contact: 2 cells\n  explicit: 2 done", "capsule: 1 cell\n  statics: 1 done"] {
+    let flow = "flow: 3 cells\n  explicit: 1 done\n  piston: 1 done\n  storeys: 1 done";
+    for text in ["contact: 2 cells\n  explicit: 2 done", "capsule: 1 cell\n  statics: 1 done", flow]
+    {
         assert!(printed.contains(text), "{printed}");
     }
     assert!(printed.contains("of 2/omega_max"), "{printed}");

@@ -30,7 +30,6 @@ pub(super) struct Capsule {
     /// Elements along each edge of the pattern, n.
     pub(super) subdivisions: u32,
     scene: SceneFile,
-    /// Its timeline.
     pub(super) timeline: Timeline,
 }
 
@@ -54,7 +53,6 @@ impl Capsule {
 #[derive(Clone)]
 pub(super) struct Progress<'a> {
     capsule: &'a Capsule,
-    /// The film.
     pub(super) film: FilmRun,
     run: Run,
     /// Wall time so far, s.
@@ -85,11 +83,11 @@ impl<'a> Progress<'a> {
         // Samples are multiples of the interval; half an interval less avoids rounding errors.
         let timeline = &self.capsule.timeline;
         let until = &mut Until(time - 0.5 * timeline.sample_interval);
-        let watch = Watch::start();
+        let (start, core) = (Instant::now(), core_seconds());
         let end = self.run.advance(&mut self.film, timeline, u64::MAX, until);
-        let (wall, on_core) = watch.seconds();
-        self.wall += wall;
-        self.on_core = self.on_core.zip(on_core).map(|(before, more)| before + more);
+        self.wall += start.elapsed().as_secs_f64();
+        let more = core_seconds().zip(core).map(|(now, then)| now - then);
+        self.on_core = self.on_core.zip(more).map(|(before, more)| before + more);
         match end {
             Some(Stop::Failed(failure)) => Err(Error::JobsFailed(format!(
                 "n {}: {} at {} s: {}",
@@ -114,7 +112,6 @@ impl<'a> Progress<'a> {
             ("steps", steps.into()),
             ("wall_seconds", self.wall.into()),
             ("core_seconds", self.on_core.into()),
-            ("core_share", core_share((self.wall, self.on_core)).into()),
             ("wall_per_second", (self.wall / time).into()),
             ("ns_per_element_step", cost(self.wall, steps, elements).into()),
             ("ledger_residual", audit.ledger_residual.into()),
@@ -124,39 +121,10 @@ impl<'a> Progress<'a> {
     }
 }
 
-/// Wall time and time on a core of this thread.
-pub(super) struct Watch {
-    start: Instant,
-    on_core: Option<f64>,
-}
-
-impl Watch {
-    /// Starts now.
-    pub(super) fn start() -> Self {
-        Self { start: Instant::now(), on_core: core_seconds() }
-    }
-
-    /// Wall time and time on a core so far, s; that of the core only if the system reports it.
-    pub(super) fn seconds(&self) -> (f64, Option<f64>) {
-        let wall = self.start.elapsed().as_secs_f64();
-        (wall, core_seconds().zip(self.on_core).map(|(now, then)| now - then))
-    }
-}
-
 /// Time this thread has run on a core so far, s, without other processes.
 fn core_seconds() -> Option<f64> {
     let bytes = Disk.read(Path::new("/proc/thread-self/schedstat")).ok()?;
     let text = String::from_utf8_lossy(&bytes);
     let nanoseconds: u64 = text.split_whitespace().next()?.parse().ok()?;
     Some(1e-9 * nanoseconds as f64)
-}
-
-/// Shortest wall time with a known core share, s. Chosen: the system accounts a thread's time in ticks
-/// of some milliseconds.
-const MIN_WALL_TIME: f64 = 0.1;
-
-/// Fraction of a wall time (s) in which a thread ran on a core (s); `None` if that is unknown, or if
-/// the wall time is too short.
-pub(super) fn core_share((wall, on_core): (f64, Option<f64>)) -> Option<f64> {
-    on_core.filter(|_| wall >= MIN_WALL_TIME).map(|on_core| on_core / wall)
 }

@@ -35,10 +35,6 @@ const TIMES: [f64; 4] = [0.005, 0.1, 0.3, 1.5];
 const REPEATS: u32 = 3;
 /// Longest wall time of a whole run that is repeated, s. Chosen.
 const MAX_REPEATED_WALL_TIME: f64 = 0.5;
-/// Least fraction of its wall time that a run has a core on an idle machine. Chosen: below it another
-/// program has used the core.
-const MIN_CORE_SHARE: f64 = 0.95;
-
 /// A part of the bench.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Part {
@@ -91,18 +87,6 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         measure(args, &Capsule::new(n, &args.set, set)?, &mut stages, &mut runs)?;
     }
     let parts = [("machine", vec![machine(set)]), ("stages", stages), ("runs", runs)];
-    let shares = parts.iter().flat_map(|(_, rows)| rows).flatten();
-    let shares = shares.filter_map(|(name, value)| match value {
-        Value::Number(share) if *name == "core_share" => Some(*share),
-        _ => None,
-    });
-    if let Some(share) = shares.reduce(f64::min).filter(|share| *share < MIN_CORE_SHARE) {
-        args.note(&format!(
-            "another program used this machine: a run had a core for {:.0} % of its wall time (core_share); the times are \
-             too long",
-            100.0 * share
-        ));
-    }
     print(&parts, args.output.format(), out)
 }
 

@@ -14,7 +14,7 @@ use billow_solver::scene::timeline::Timeline;
 
 use billow_study::platform::error::{Error, Result};
 
-use super::capsule::{Capsule, Watch, core_share};
+use super::capsule::Capsule;
 use super::{REPEATS, Row, cost};
 
 /// Steps that are timed: whole blocks of 50 steps of the tunnelling monitor, fewer on a large mesh.
@@ -27,15 +27,11 @@ pub(super) fn measure(capsule: &Capsule, name: &str, run: &FilmRun) -> Result<Ro
     let elements = run.elements();
     let steps = STEPS[usize::from(elements > LARGE)];
     let mut least = [f64::INFINITY; Stage::ALL.len()];
-    let (mut whole, mut share_of_core, mut step) = (f64::INFINITY, None, f64::NAN);
+    let (mut whole, mut step) = (f64::INFINITY, f64::NAN);
     for _ in 0..REPEATS {
-        let (mut film, watch) = (run.film.clone(), Watch::start());
+        let (mut film, start) = (run.film.clone(), Instant::now());
         take_steps(&mut film, &capsule.timeline, steps, &mut Untimed)?;
-        let seconds = watch.seconds();
-        if cost(seconds.0, steps, elements) < whole {
-            whole = cost(seconds.0, steps, elements);
-            share_of_core = core_share(seconds);
-        }
+        whole = whole.min(cost(start.elapsed().as_secs_f64(), steps, elements));
         step = (film.view().state.time - run.view().state.time) / steps as f64;
         let (mut film, mut clock) = (run.film.clone(), Clock::default());
         take_steps(&mut film, &capsule.timeline, steps, &mut clock)?;
@@ -60,7 +56,6 @@ pub(super) fn measure(capsule: &Capsule, name: &str, run: &FilmRun) -> Result<Ro
         ("whole", whole.into()),
         ("steps_per_second", rate.into()),
         ("wall_per_second", (1e-9 * whole * elements as f64 * rate).into()),
-        ("core_share", share_of_core.into()),
     ]);
     Ok(row)
 }

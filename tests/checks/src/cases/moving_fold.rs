@@ -42,203 +42,132 @@ fn size(name: &str) -> f64 {
     number(&format!("moving_fold/{name}"))
 }
 
-/// A strip of square cells.
-#[derive(Debug, Clone, Copy)]
-struct Strip {
-    /// Cells along one arm, a multiple of the aspect ratio of an arm.
+/// Width of the strip, m.
+fn width() -> f64 {
+    size("arm") / f64::from(ASPECT)
+}
+
+/// Nodes across a strip with this number of square cells along an arm, in a column: 0 is the fixed end, the last the
+/// free one.
+fn nodes(cells: u32, column: u32) -> Vec<u32> {
+    (0..=cells / ASPECT).map(|row| row * (2 * cells + 1) + column).collect()
+}
+
+/// The strip at time 0, with the perturbation of a seed. Over the length of the ramp behind the fold, the film rises
+/// from arm A to arm B without strain, and its speed rises from 0 to v0.
+fn folded(cells: u32, seed: u64) -> FilmScene {
+    let [arm, gap, ramp, speed] = ["arm", "gap", "ramp", "speed"].map(size);
+    let width = width();
+    let flat = crossed_grid(2 * cells, cells / ASPECT, 2.0 * arm, width);
+    let rise = |s: f64| ((s - arm) / ramp).clamp(0.0, 1.0);
+    let velocities = flat.positions.iter().map(|x| Vector3::x() * (speed * rise(x.x))).collect();
+    let modes = pseudo_random(MODES, seed);
+    // Out of the plane, symmetric and antisymmetric across the strip, zero at both ends.
+    let perturbation = |s: f64, y: f64| -> f64 {
+        let mode = |(k, mode): (u32, &Vector3<f64>)| {
+            let along = libm::sin(f64::from(k) * PI * s / (2.0 * arm));
+            AMPLITUDE * along * (mode.x + mode.y * (2.0 * y / width - 1.0))
+        };
+        (1..).zip(&modes).map(mode).sum()
+    };
+    let shortening = ramp - (ramp * ramp - gap * gap).sqrt();
+    let shell = moved(flat, |x| {
+        let (s, y) = (x.x, x.y);
+        let along = if s <= arm { s } else { 2.0 * arm - s + shortening * rise(s) };
+        Vector3::new(along, y, gap * rise(s) + perturbation(s, y))
+    });
+    let distance = Some(size("contact_distance"));
+    FilmScene {
+        velocities,
+        supports: vec![held(nodes(cells, 0), "xyz")],
+        contact: Some(FilmContact { distance, ..FilmContact::default() }),
+        ..free_film(shell, Film::PAPER)
+    }
+}
+
+/// Time (s), l/L and energy ledger of a strip that unrolls.
+type Sample = (f64, f64, Ledger);
+
+/// A value when l/L first falls to `length`, linear between samples; NaN if it does not.
+fn when(samples: &[Sample], length: f64, value: impl Fn(&Sample) -> f64) -> f64 {
+    let pair = samples.windows(2).find(|pair| pair[1].1 <= length);
+    pair.map_or(f64::NAN, |pair| {
+        let fraction = (length - pair[0].1) / (pair[1].1 - pair[0].1);
+        let [from, to] = [value(&pair[0]), value(&pair[1])];
+        from + fraction * (to - from)
+    })
+}
+
+/// Energy kept and coherent share of one start at each of these l/L, and the largest residual of its energy ledger.
+fn unrolled(
+    rig: &Rig,
     cells: u32,
-}
-
-impl Strip {
-    /// Nodes along the strip.
-    fn columns(self) -> u32 {
-        2 * self.cells + 1
-    }
-
-    /// Cells across the strip.
-    fn rows(self) -> u32 {
-        self.cells / ASPECT
-    }
-
-    /// Width of the strip, m.
-    fn width() -> f64 {
-        size("arm") / f64::from(ASPECT)
-    }
-
-    /// Nodes across the strip in a column: 0 is the fixed end, the last the free one.
-    fn nodes(self, column: u32) -> Vec<u32> {
-        (0..=self.rows()).map(|row| row * self.columns() + column).collect()
-    }
-
-    /// The strip at time 0, with the perturbation of a seed. Over the length of the ramp behind the fold,
-    /// the film rises from arm A to arm B without strain, and its speed rises from 0 to v0.
-    fn scene(self, seed: u64) -> FilmScene {
-        let [arm, gap, ramp, speed] = ["arm", "gap", "ramp", "speed"].map(size);
-        let width = Self::width();
-        let flat = crossed_grid(self.columns() - 1, self.rows(), 2.0 * arm, width);
-        let rise = |s: f64| ((s - arm) / ramp).clamp(0.0, 1.0);
-        let velocities = flat.positions.iter().map(|x| Vector3::x() * (speed * rise(x.x)));
-        let velocities = velocities.collect();
-        let modes = pseudo_random(MODES, seed);
-        // Out of the plane, symmetric and antisymmetric across the strip, zero at both ends.
-        let perturbation = |s: f64, y: f64| -> f64 {
-            let mode = |(k, mode): (u32, &Vector3<f64>)| {
-                let along = libm::sin(f64::from(k) * PI * s / (2.0 * arm));
-                AMPLITUDE * along * (mode.x + mode.y * (2.0 * y / width - 1.0))
-            };
-            (1..).zip(&modes).map(mode).sum()
-        };
-        let shortening = ramp - (ramp * ramp - gap * gap).sqrt();
-        let shell = moved(flat, |x| {
-            let (s, y) = (x.x, x.y);
-            let folded = if s <= arm { s } else { 2.0 * arm - s + shortening * rise(s) };
-            Vector3::new(folded, y, gap * rise(s) + perturbation(s, y))
-        });
-        let contact =
-            FilmContact { distance: Some(size("contact_distance")), ..FilmContact::default() };
-        FilmScene {
-            velocities,
-            supports: vec![held(self.nodes(0), "xyz")],
-            contact: Some(contact),
-            ..free_film(shell, Film::PAPER)
+    seed: u64,
+    lengths: &[f64],
+) -> Result<(Vec<[f64; 2]>, f64), String> {
+    let arm = size("arm");
+    let scene = folded(cells, seed);
+    let mut film = rig.start(&scene)?;
+    let end = nodes(cells, 2 * cells);
+    let position = |film: &FilmView<'_>| {
+        let sum: f64 = end.iter().map(|node| film.state.positions.x[*node as usize]).sum();
+        sum / end.len() as f64
+    };
+    let start = position(&film.view());
+    let sample = |film: &FilmView<'_>| {
+        (film.state.time, 1.0 - 0.5 * (position(film) - start) / arm, film.ledger())
+    };
+    let last = lengths.iter().copied().fold(1.0, f64::min) - HALF_WINDOW;
+    let mut samples = vec![sample(&film.view())];
+    for number in 1..=MAX_SAMPLES {
+        advance(&mut film, SAMPLE_INTERVAL * f64::from(number), &Phase::default())?;
+        let now = sample(&film.view());
+        samples.push(now);
+        if now.1 < last {
+            break;
         }
     }
-}
-
-/// One sample of a strip that unrolls.
-#[derive(Debug, Clone, Copy)]
-struct Sample {
-    time: f64,
-    /// l/L.
-    length: f64,
-    ledger: Ledger,
-}
-
-/// A strip that unrolls.
-#[derive(Debug, Clone)]
-struct Unrolling {
-    samples: Vec<Sample>,
-    /// ½ μ L³/E0, s².
-    scale: f64,
-}
-
-impl Unrolling {
-    /// Runs a strip until l/L is half a window below `last`, or to the last sample.
-    fn run(rig: &Rig, strip: Strip, seed: u64, last: f64) -> Result<Self, String> {
-        let arm = size("arm");
-        let scene = strip.scene(seed);
-        let mut film = rig.start(&scene)?;
-        let end = strip.nodes(strip.columns() - 1);
-        let position = |film: &FilmView<'_>| {
-            let sum: f64 = end.iter().map(|node| film.state.positions.x[*node as usize]).sum();
-            sum / end.len() as f64
-        };
-        let start = position(&film.view());
-        let sample = |film: &FilmView<'_>| Sample {
-            time: film.state.time,
-            length: 1.0 - 0.5 * (position(film) - start) / arm,
-            ledger: film.ledger(),
-        };
-        let mut samples = vec![sample(&film.view())];
-        for number in 1..=MAX_SAMPLES {
-            advance(&mut film, SAMPLE_INTERVAL * f64::from(number), &Phase::default())?;
-            let now = sample(&film.view());
-            samples.push(now);
-            if now.length < last - HALF_WINDOW {
-                break;
-            }
-        }
-        let mass = scene.film.area_density() * Strip::width() * arm;
-        Ok(Self { scale: 0.5 * mass * arm * arm / samples[0].ledger.kinetic, samples })
-    }
-
-    /// A value when l/L first falls to `length`, linear between samples; NaN if it does not.
-    fn when(&self, length: f64, value: impl Fn(&Sample) -> f64) -> f64 {
-        let pair = self.samples.windows(2).find(|pair| pair[1].length <= length);
-        pair.map_or(f64::NAN, |pair| {
-            let fraction = (length - pair[0].length) / (pair[1].length - pair[0].length);
-            let [from, to] = [value(&pair[0]), value(&pair[1])];
-            from + fraction * (to - from)
-        })
-    }
-
-    /// E/E0 when l/L falls to `length`.
-    fn energy_kept(&self, length: f64) -> f64 {
-        self.when(length, |sample| sample.ledger.kinetic) / self.samples[0].ledger.kinetic
-    }
-
-    /// The coherent share when l/L falls to `length`.
-    fn coherent_share(&self, length: f64) -> f64 {
+    let kinetic = samples[0].2.kinetic;
+    let mass = scene.film.area_density() * width() * arm;
+    let found = lengths.iter().map(|length| {
+        let kept = when(&samples, *length, |sample| sample.2.kinetic) / kinetic;
         let [from, to] = [HALF_WINDOW, -HALF_WINDOW]
-            .map(|offset| self.when(length + offset, |sample| sample.time));
+            .map(|offset| when(&samples, length + offset, |sample| sample.0));
         // v/L = 2 Δ(l/L)/Δt.
         let speed = 4.0 * HALF_WINDOW / (to - from);
-        self.scale * length * speed * speed
-    }
-
-    /// Largest residual of the energy ledger.
-    fn residual(&self) -> f64 {
-        let ledgers: Vec<Ledger> = self.samples.iter().map(|sample| sample.ledger).collect();
-        residuals(&ledgers).into_iter().fold(0.0, worse)
-    }
+        [kept, 0.5 * mass * arm * arm / kinetic * length * speed * speed]
+    });
+    let found = found.collect();
+    let ledgers: Vec<Ledger> = samples.iter().map(|sample| sample.2).collect();
+    Ok((found, residuals(&ledgers).into_iter().fold(0.0, worse)))
 }
 
-/// Smallest, middle and largest of an odd number of values; NaN if one is NaN.
-fn spread(values: impl Iterator<Item = f64>) -> [f64; 3] {
-    let mut sorted: Vec<f64> = values.collect();
-    if sorted.iter().any(|value| value.is_nan()) {
-        return [f64::NAN; 3];
-    }
-    sorted.sort_by(f64::total_cmp);
-    [sorted[0], sorted[sorted.len() / 2], sorted[sorted.len() - 1]]
-}
-
-/// Medians over the perturbed starts on one mesh, with floors of the energy kept and of the coherent
-/// share at each of the lengths.
-fn judged(rig: &Rig, cells: u32, kept_floors: &[f64], coherent_floors: Option<&[f64]>) -> Outcome {
+/// Medians over the perturbed starts on a mesh with this number of elements along an arm, with the floors of the
+/// coherent share by their name.
+pub fn moving_fold(rig: &Rig, cells: u32, share_floors: &str) -> Outcome {
     let lengths = numbers("moving_fold/lengths");
-    let last = lengths.iter().copied().fold(1.0, f64::min);
-    let runs: Result<Vec<Unrolling>, String> =
-        SEEDS.iter().map(|seed| Unrolling::run(rig, Strip { cells }, *seed, last)).collect();
-    let runs = runs?;
+    let floors = ["energy_kept", share_floors].map(|name| numbers(&format!("moving_fold/{name}")));
+    let starts = SEEDS.iter().map(|seed| unrolled(rig, cells, *seed, &lengths));
+    let starts = starts.collect::<Result<Vec<_>, String>>()?;
     let mut rows = Vec::new();
-    for (place, length) in lengths.into_iter().enumerate() {
-        let of = |value: fn(&Unrolling, f64) -> f64| spread(runs.iter().map(|r| value(r, length)));
-        let [least, kept, most] = of(Unrolling::energy_kept);
-        let quantity = |name: &str| format!("L/{cells}, l/L {length}: {name}");
-        let energy = Row::at_least(&quantity("energy kept"), kept, kept_floors[place])
-            .with_note(&format!("{least:.3} to {most:.3}"));
-        let [least, coherent, most] = of(Unrolling::coherent_share);
-        let mut note = format!("{least:.3} to {most:.3}");
-        let lowered = coherent_floors.filter(|floors| floors[place] < floors[0]);
-        if let Some([asked, ..]) = lowered {
-            let limit = format!("; measured limit, asked {asked}: {cells} nodes an arm snap");
-            note.push_str(&limit);
-        }
-        if let Some(floors) = coherent_floors {
-            let share = Row::at_least(&quantity("coherent share"), coherent, floors[place]);
-            rows.extend([energy, share.with_note(&note)]);
-        } else {
-            rows.push(energy.with_note(&format!("coherent share {coherent:.3}, {note}")));
+    for (place, length) in lengths.iter().enumerate() {
+        for (index, name) in ["energy kept", "coherent share"].into_iter().enumerate() {
+            let mut sorted: Vec<f64> = starts.iter().map(|start| start.0[place][index]).collect();
+            // NaN is the first: no median stands for a start that failed.
+            sorted.sort_by(|a, b| b.is_nan().cmp(&a.is_nan()).then(a.total_cmp(b)));
+            let [least, .., most] = sorted[..] else { return Err("no starts".to_owned()) };
+            let median = if least.is_nan() { least } else { sorted[sorted.len() / 2] };
+            let (quantity, floor) =
+                (format!("L/{cells}, l/L {length}: {name}"), floors[index][place]);
+            let mut note = format!("{least:.3} to {most:.3}");
+            if floor < floors[index][0] {
+                note += &format!("; measured limit: {cells} nodes an arm snap");
+            }
+            rows.push(Row::at_least(&quantity, median, floor).with_note(&note));
         }
     }
-    let residual = runs.iter().map(Unrolling::residual).fold(0.0, worse);
+    let residual = starts.iter().map(|start| start.1).fold(0.0, worse);
     let band = number("moving_fold/ledger_band");
     rows.push(Row::at_most(&format!("L/{cells}: film energy residual"), residual, band));
     Ok(rows)
-}
-
-/// Elements of L/10, without a floor of the coherent share, and of L/20.
-pub fn moving_fold(rig: &Rig) -> Outcome {
-    let coarse = judged(rig, 10, &numbers("moving_fold/energy_kept_coarse"), None)?;
-    let (kept, coherent) =
-        (numbers("moving_fold/energy_kept"), numbers("moving_fold/coherent_share"));
-    Ok([coarse, judged(rig, 20, &kept, Some(&coherent))?].concat())
-}
-
-/// Elements of L/40.
-pub fn moving_fold_fine(rig: &Rig) -> Outcome {
-    let (kept, coherent) =
-        (numbers("moving_fold/energy_kept"), numbers("moving_fold/coherent_share_fine"));
-    judged(rig, 40, &kept, Some(&coherent))
 }

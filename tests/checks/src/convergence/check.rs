@@ -19,9 +19,7 @@ use billow_study::job::proportion::Proportion;
 /// The runs on one mesh, for one measure.
 #[derive(Debug)]
 pub(super) struct MeshCheck {
-    /// Subdivisions of the mesh.
     pub(super) subdivisions: u32,
-    /// Name of the measure.
     pub(super) measure: &'static str,
     /// Of the runs with an error in the table, those that keep it.
     pub(super) kept: Proportion,

@@ -26,13 +26,11 @@ const QUANTILE: usize = FITS * 95 / 100;
 /// A measure on one mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Level {
-    /// Subdivisions.
     pub(super) subdivisions: u32,
     /// Value: the median of its runs.
     pub(super) value: f64,
     /// Standard error of that value by the seeds.
     pub(super) noise: f64,
-    /// Number of its runs.
     pub(super) runs: usize,
 }
 

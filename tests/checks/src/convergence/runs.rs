@@ -16,18 +16,14 @@ use billow_study::store::stored::Stored;
 /// One trusted run.
 #[derive(Debug, Clone)]
 pub(super) struct MeshRun {
-    /// Its scene.
     pub(super) scene: Scene,
-    /// The features of its scene.
     pub(super) features: Features,
-    /// Its row.
     pub(super) cells: Cells,
 }
 
 /// The runs of one scene, with whatever mesh, model and seed.
 #[derive(Debug, Clone)]
 pub(super) struct SceneRuns {
-    /// The runs, in plan order.
     pub(super) runs: Vec<MeshRun>,
     /// The parameters of the scene but mesh, model and seed, as text.
     pub(super) label: String,

@@ -8,7 +8,7 @@ use super::check::check;
 use super::limit::levels;
 use super::runs::{MeshRun, SceneRuns};
 use billow_study::accuracy::features::FEATURE_NAMES;
-use billow_study::accuracy::{Features, Method, PROMISED};
+use billow_study::accuracy::{Features, Method};
 use billow_study::job::Status;
 use billow_study::job::row::{Cells, ColumnId};
 
@@ -51,10 +51,6 @@ fn scenes() -> Vec<SceneRuns> {
     [[6, 3], [5, 3], [8, 3], [10, 3], [6, 2], [6, 4], [6, 5]].map(one).to_vec()
 }
 
-fn t_90() -> &'static billow_study::accuracy::Promised {
-    PROMISED.iter().find(|promised| promised.measure == ColumnId::T90ZRim).unwrap()
-}
-
 fn film(meshes: &[u32]) -> Method {
     Method { model: ModelKind::Film, meshes: meshes.to_vec() }
 }
@@ -65,7 +61,7 @@ fn bias_changes_and_limit_are_those_of_the_runs() {
     assert_eq!(table.coordinates.base[..2], [6.0, 3.0]);
     let entry = |meshes: &[u32]| table.entry(&film(meshes), "t_90_z_rim").unwrap();
     let four = entry(&[4]);
-    assert_eq!((four.scenes, four.runs), (7, 35));
+    assert!((four.scenes, four.runs) == (7, 35) && four.deviation < 4e-3, "{four:?}");
     let against_finest = |slope: f64, n: f64| (1.0 + slope / n) / (1.0 + slope / 24.0) - 1.0;
     assert!((four.bias - against_finest(0.2, 4.0)).abs() < 2e-3, "{}", four.bias);
     let ranges = [0, 1].map(|index| four.ranges[FEATURE_NAMES[index].0]);
@@ -81,33 +77,11 @@ fn bias_changes_and_limit_are_those_of_the_runs() {
     assert!(limit.known && (limit.order - 1.0).abs() < 0.2, "{limit:?}");
 }
 
-/// Designs that the table was not made from keep the error, and the deviation of scenes that were left out is small
-/// where the bias is nearly linear.
-#[test]
-fn other_designs_keep_the_error() {
-    let mut kept = 0;
-    let mut runs = 0;
-    let mut all = scenes();
-    all.push(one([8, 4]));
-    let table = calibrate(&all, Vec::new(), 24).unwrap();
-    let four = table.entry(&film(&[4]), "t_90_z_rim").unwrap();
-    assert!(four.scenes == 8 && four.deviation < 4e-3, "{four:?}");
-    for design in [[5, 2], [7, 3], [9, 5], [10, 4], [8, 2], [7, 4]].map(one) {
-        let finest = design.runs.last().unwrap().measure(ColumnId::T90ZRim).unwrap();
-        for run in design.runs.iter().filter(|run| run.mesh().1 < 24) {
-            let error = table.error(&film(&[run.mesh().1]), &run.features, t_90()).unwrap();
-            let actual = (run.measure(ColumnId::T90ZRim).unwrap() / finest - 1.0).abs();
-            kept += u32::from(actual <= error.of_reference);
-            runs += 1;
-        }
-    }
-    assert!(10 * kept >= 9 * runs, "{kept} of {runs}");
-}
-
 /// A check counts the runs of each mesh; a table that promises too much is found out.
 #[test]
 fn a_check_counts_the_runs_that_keep_the_error_of_the_table() {
     let mut table = calibrate(&scenes(), Vec::new(), 24).unwrap();
+    // The first two are not among those that the table was made from.
     let designs = [[7, 3], [9, 3], [6, 3]].map(one);
     let checks = check(&designs, &table);
     let meshes: Vec<u32> = checks.iter().map(|check| check.subdivisions).collect();
@@ -125,11 +99,7 @@ fn a_check_counts_the_runs_that_keep_the_error_of_the_table() {
     table.limits.clear();
     assert!(check(&designs, &table).iter().all(|check| check.kept.met == 0));
     assert!(check(&[], &table).is_empty());
-}
-
-#[test]
-fn without_a_run_on_the_finest_mesh_there_is_no_table() {
-    assert!(calibrate(&scenes(), Vec::new(), 32).is_none());
+    assert!(calibrate(&scenes(), Vec::new(), 32).is_none(), "no run on this mesh");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use billow_study::analysis::work_precision::{Ending, SceneRuns};
 use billow_study::input::value::Value;
 use billow_study::job::Status;
 
-use super::meter::{Meter, Scene, quantity, timed};
+use super::meter::{Meter, add, quantity, scene, timed};
 use crate::cases::{Rig, static_airbag};
 
 /// Cells along the side of a quarter of the airbag. With 96 the search finds another minimum, of higher energy.
@@ -28,38 +28,37 @@ pub(super) fn square_airbag(rig: &Rig) -> Result<SceneRuns, String> {
         quantity("height", "m", "height of the middle", None),
         quantity("volume", "m3", "enclosed volume", None),
     ];
-    let mut scene = Scene::new(
-        "square_airbag",
-        "two squares sewn together and inflated, at rest; work is elements times Newton steps, seconds are those of the search",
-        &["cells", "solver.integrator", "solver.cfl"],
-        quantities,
-    )
-    .at_rest();
+    let meaning = "two squares sewn together and inflated, at rest; work is elements times Newton steps, seconds are those \
+                   of the search";
+    let mut scene = scene(["square_airbag", meaning], quantities, false);
+    let method = |cells: u32, integrator: &str, cfl: Value| {
+        [("cells", cells.into()), ("solver.integrator", integrator.into()), ("solver.cfl", cfl)]
+    };
     for cells in CELLS {
         let (state, wall) = timed(|| static_airbag::inflated(rig, cells))?;
         let (elements, steps) = (state.model.elements() as f64, f64::from(state.iterations));
         let meter = Meter { elements, steps, implicit: true, wall, ..Meter::default() };
         let values = [state.potential_energy, state.positions.z[0], 8.0 * state.volume];
-        let method = [cells.into(), STATIC_SEARCH.into(), Value::Null];
-        scene.add(method, &meter, Ending::Trusted, &values);
+        let method = method(cells, STATIC_SEARCH, Value::Null);
+        add(&mut scene, method, &meter, Ending::Trusted, &values);
     }
     for (kind, cfl, finest) in RELAXATIONS {
         for cells in CELLS.into_iter().filter(|cells| *cells <= finest) {
-            let method = [cells.into(), entry(kind).name.into(), cfl.into()];
+            let method = method(cells, entry(kind).name, cfl.into());
             let (settled, wall) = timed(|| static_airbag::relaxed(rig, cells, (kind, cfl)))?;
             match settled {
                 Ok((mut film, energy)) => {
                     let meter = Meter::of(&mut film, wall);
                     let state = film.view().state;
                     let values = [energy, state.positions.z[0], 8.0 * state.volume];
-                    scene.add(method, &meter, Ending::Trusted, &values);
+                    add(&mut scene, method, &meter, Ending::Trusted, &values);
                 }
                 Err(mut unsettled) => {
                     let ending = Ending::Failed(Status::Failed(unsettled.failure.kind));
-                    scene.add(method, &Meter::of(&mut unsettled.film, wall), ending, &[]);
+                    add(&mut scene, method, &Meter::of(&mut unsettled.film, wall), ending, &[]);
                 }
             }
         }
     }
-    Ok(scene.runs())
+    Ok(scene)
 }

@@ -14,61 +14,40 @@ pub(super) fn quantity(name: &str, unit: &str, meaning: &str, exact: Option<f64>
     Quantity { name, unit, meaning, exact, is_course: false }
 }
 
-/// A scene, and the names of the numerical parameters of its runs.
-pub(super) struct Scene {
-    runs: SceneRuns,
-    parameters: &'static [&'static str],
+/// A scene without runs. Its seconds are those of a simulated second, or of a whole run at rest.
+pub(super) fn scene(
+    [name, meaning]: [&str; 2],
+    quantities: Vec<Quantity>,
+    per_simulated_second: bool,
+) -> SceneRuns {
+    let [name, meaning] = [name, meaning].map(str::to_owned);
+    let runs = Vec::new();
+    SceneRuns { name, meaning, quantities, per_simulated_second, runs, without_result: 0 }
 }
 
-impl Scene {
-    /// A scene without runs.
-    pub(super) fn new(
-        name: &str,
-        meaning: &str,
-        parameters: &'static [&'static str],
-        quantities: Vec<Quantity>,
-    ) -> Self {
-        let [name, meaning] = [name, meaning].map(str::to_owned);
-        let per_simulated_second = true;
-        let (runs, without_result) = (Vec::new(), 0);
-        let runs =
-            SceneRuns { name, meaning, quantities, per_simulated_second, runs, without_result };
-        Self { runs, parameters }
-    }
+/// A configuration: numerical parameters and their values.
+pub(super) type Configuration<const N: usize> = [(&'static str, Value); N];
 
-    /// Adds a run with a value of each parameter, its cost and its result for each quantity.
-    pub(super) fn add<const N: usize>(
-        &mut self,
-        configuration: [Value; N],
-        meter: &Meter,
-        ending: Ending,
-        values: &[f64],
-    ) {
-        let names = self.parameters.iter().map(|name| (*name).to_owned());
-        let per = if self.runs.per_simulated_second { meter.simulated } else { 1.0 };
-        let result = |index| values.get(index).map(|value| Outcome::Number(*value));
-        self.runs.runs.push(Run {
-            configuration: names.zip(configuration).collect(),
-            ending,
-            elements: meter.elements,
-            steps: meter.steps,
-            implicit: meter.implicit,
-            seconds: Some(meter.wall / per),
-            results: (0..self.runs.quantities.len()).map(result).collect(),
-            mesh_errors: Vec::new(),
-        });
-    }
-
-    /// The same scene, where seconds are those of a run and not of a simulated second.
-    pub(super) fn at_rest(mut self) -> Self {
-        self.runs.per_simulated_second = false;
-        self
-    }
-
-    /// All runs.
-    pub(super) fn runs(self) -> SceneRuns {
-        self.runs
-    }
+/// Adds a run with its cost and its result for each quantity; none for a run that failed.
+pub(super) fn add<const N: usize>(
+    scene: &mut SceneRuns,
+    configuration: Configuration<N>,
+    meter: &Meter,
+    ending: Ending,
+    values: &[f64],
+) {
+    let per = if scene.per_simulated_second { meter.simulated } else { 1.0 };
+    let result = |index| values.get(index).map(|value| Outcome::Number(*value));
+    scene.runs.push(Run {
+        configuration: configuration.map(|(name, value)| (name.to_owned(), value)).into(),
+        ending,
+        elements: meter.elements,
+        steps: meter.steps,
+        implicit: meter.implicit,
+        seconds: Some(meter.wall / per),
+        results: (0..scene.quantities.len()).map(result).collect(),
+        mesh_errors: Vec::new(),
+    });
 }
 
 /// Cost so far: elements, steps, whether some are implicit, simulated time, wall time.

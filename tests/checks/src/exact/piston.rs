@@ -5,7 +5,7 @@ use billow_solver::scene::{IntegratorKind, Stepping};
 use billow_study::analysis::work_precision::{Ending, SceneRuns};
 use billow_study::input::value::Value;
 
-use super::meter::{Meter, Scene, quantity, timed};
+use super::meter::{Meter, add, quantity, scene, timed};
 use crate::cases::reference::number;
 use crate::cases::{Rig, gas};
 
@@ -27,18 +27,19 @@ pub(super) fn injected_piston(rig: &Rig) -> Result<SceneRuns, String> {
     let exact = gas::injected_exact(end);
     let simulated = end - start;
     let quantities = vec![quantity("x", "m", "position at 50 ms", Some(exact))];
-    let mut scene = Scene::new(
-        "injected_piston",
-        "a plate driven by a constant inflow into vacuum; the model piston has no elements: its work is steps",
-        &[
-            "solver.model",
-            "solver.integrator",
-            "solver.cfl",
-            "solver.stepping.adaptive",
-            "solver.stepping.fixed",
-        ],
-        quantities,
-    );
+    let meaning = "a plate driven by a constant inflow into vacuum; the model piston has no elements: its work is steps";
+    let mut scene = scene(["injected_piston", meaning], quantities, true);
+    let configuration =
+        |model: &str, integrator: Value, cfl: Value, [adaptive, fixed]: [Value; 2]| {
+            [
+                ("solver.model", model.into()),
+                ("solver.integrator", integrator),
+                ("solver.cfl", cfl),
+                ("solver.stepping.adaptive", adaptive),
+                ("solver.stepping.fixed", fixed),
+            ]
+        };
+    let none = Value::Null;
     let pairs = PISTON_RUNS
         .iter()
         .flat_map(|(kind, count)| PISTON_CFL.iter().take(*count).map(move |cfl| (*kind, *cfl)));
@@ -46,23 +47,23 @@ pub(super) fn injected_piston(rig: &Rig) -> Result<SceneRuns, String> {
         let ((mut film, height), wall) = timed(|| gas::injected(rig, kind, cfl))?;
         let meter = Meter::of(&mut film, wall);
         let integrator = entry(kind).name.into();
-        let method = ["film".into(), integrator, cfl.into(), Value::Null, Value::Null];
-        scene.add(method, &meter, Ending::Trusted, &[height]);
+        let method = configuration("film", integrator, cfl.into(), [none.clone(), none.clone()]);
+        add(&mut scene, method, &meter, Ending::Trusted, &[height]);
     }
     let adaptive = TOLERANCES.map(Stepping::Adaptive);
     let fixed = FIXED_STEPS.map(Stepping::Fixed);
     // A run takes less than a millisecond; the first of a process also pays for what is done once.
     let _ = gas::injected_model(Stepping::Adaptive(TOLERANCES[0]))?;
     for stepping in adaptive.into_iter().chain(fixed) {
-        let (tolerance, step) = match stepping {
-            Stepping::Adaptive(tolerance) => (tolerance.into(), Value::Null),
-            Stepping::Fixed(step) | Stepping::Stable(step) => (Value::Null, step.into()),
+        let control = match stepping {
+            Stepping::Adaptive(tolerance) => [tolerance.into(), none.clone()],
+            Stepping::Fixed(step) | Stepping::Stable(step) => [none.clone(), step.into()],
         };
         let ((steps, height), wall) = timed(|| gas::injected_model(stepping))?;
         let steps = steps as f64;
         let meter = Meter { steps, simulated, wall, ..Meter::default() };
-        let method = ["piston".into(), Value::Null, Value::Null, tolerance, step];
-        scene.add(method, &meter, Ending::Trusted, &[height]);
+        let method = configuration("piston", none.clone(), none.clone(), control);
+        add(&mut scene, method, &meter, Ending::Trusted, &[height]);
     }
-    Ok(scene.runs())
+    Ok(scene)
 }

@@ -5,7 +5,7 @@ use billow_solver::scene::IntegratorKind;
 use billow_study::analysis::work_precision::{Ending, SceneRuns};
 use billow_study::input::value::Value;
 
-use super::meter::{Meter, Scene, quantity, timed};
+use super::meter::{Configuration, Meter, add, quantity, scene, timed};
 use crate::cases::reference::rows;
 use crate::cases::{Rig, drum, sphere_motion};
 
@@ -33,10 +33,16 @@ struct Vibration {
 }
 
 impl Vibration {
-    fn configuration(&self) -> [Value; 4] {
+    /// `mesh`: the parameter of its mesh.
+    fn configuration(&self, mesh: &'static str) -> Configuration<4> {
         let integrator = entry(self.integrator).name;
         let cfl = if self.samples.is_some() { Value::Null } else { self.cfl.into() };
-        [self.mesh.into(), integrator.into(), cfl, self.samples.into()]
+        [
+            (mesh, self.mesh.into()),
+            ("solver.integrator", integrator.into()),
+            ("solver.cfl", cfl),
+            ("samples", self.samples.into()),
+        ]
     }
 }
 
@@ -69,13 +75,9 @@ pub(super) fn breathing_sphere(rig: &Rig) -> Result<SceneRuns, String> {
         let name = format!("frequency_{}_Pa", row[0]);
         quantity(&name, "Hz", &format!("frequency at {} Pa", row[0]), Some(row[1]))
     };
-    let mut scene = Scene::new(
-        "breathing_sphere",
-        "radial mode of a sphere of film on adiabatic gas; cost of the runs at both pressures; implicit steps end at \
-         samples, whose number a period is given",
-        &["level", "solver.integrator", "solver.cfl", "samples"],
-        rows.iter().map(name).collect(),
-    );
+    let meaning = "radial mode of a sphere of film on adiabatic gas; cost of the runs at both pressures; implicit steps end \
+                   at samples, whose number a period is given";
+    let mut scene = scene(["breathing_sphere", meaning], rows.iter().map(name).collect(), true);
     for run in vibrations(&SPHERE_LEVELS, 0) {
         let (mut meter, mut values) = (Meter::default(), Vec::new());
         for row in &rows {
@@ -87,9 +89,9 @@ pub(super) fn breathing_sphere(rig: &Rig) -> Result<SceneRuns, String> {
             meter.add(&mut film, wall);
             values.push(value);
         }
-        scene.add(run.configuration(), &meter, Ending::Trusted, &values);
+        add(&mut scene, run.configuration("level"), &meter, Ending::Trusted, &values);
     }
-    Ok(scene.runs())
+    Ok(scene)
 }
 
 /// A drum: a disc under tension from its rim.
@@ -100,13 +102,9 @@ pub(super) fn stretched_disc(rig: &Rig) -> Result<SceneRuns, String> {
         let meaning = format!("frequency with {} nodal diameters", mode.diameters);
         quantity(&name, "Hz", &meaning, Some(mode.frequency))
     };
-    let mut scene = Scene::new(
-        "stretched_disc",
-        "frequencies of a disc under tension from its rim; cost of the runs of both modes; implicit steps end at \
-         samples, whose number a period is given",
-        &["rings", "solver.integrator", "solver.cfl", "samples"],
-        modes.iter().map(name).collect(),
-    );
+    let meaning = "frequencies of a disc under tension from its rim; cost of the runs of both modes; implicit steps end at \
+                   samples, whose number a period is given";
+    let mut scene = scene(["stretched_disc", meaning], modes.iter().map(name).collect(), true);
     for run in vibrations(&RINGS, 1) {
         let (mut meter, mut values) = (Meter::default(), Vec::new());
         for mode in &modes {
@@ -115,7 +113,7 @@ pub(super) fn stretched_disc(rig: &Rig) -> Result<SceneRuns, String> {
             meter.add(&mut film, wall);
             values.push(value);
         }
-        scene.add(run.configuration(), &meter, Ending::Trusted, &values);
+        add(&mut scene, run.configuration("rings"), &meter, Ending::Trusted, &values);
     }
-    Ok(scene.runs())
+    Ok(scene)
 }

@@ -95,8 +95,6 @@ pub(super) struct Search {
 fn border_width() -> f64 {
     0.02
 }
-
-/// A map.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Map {
