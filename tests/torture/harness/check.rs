@@ -19,7 +19,6 @@ const COSTS: [&str; 4] = ["wall_seconds", "ns_per_element_step", "commit", "prog
 const MAX_NAMED: usize = 3;
 
 /// What an undisturbed run of a study gave.
-#[derive(Debug, Clone, PartialEq)]
 pub struct Truth {
     /// Rows of the table, without costs.
     pub rows: Vec<Value>,
@@ -104,7 +103,7 @@ pub fn compare_journal(trial: &mut Trial, place: &Place) {
 }
 
 /// Adds a fault for a temporary file that remains.
-pub fn check_temporary_files(trial: &mut Trial, place: &Place) {
+fn check_temporary_files(trial: &mut Trial, place: &Place) {
     let temporary = |path: &&std::path::PathBuf| {
         path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'))
     };

@@ -8,7 +8,7 @@ use std::process::Command;
 use serde_json::Value;
 
 /// A folder in which a trial runs, and a folder beside it for what the program says.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Place {
     path: PathBuf,
     said: PathBuf,

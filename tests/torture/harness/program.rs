@@ -18,7 +18,6 @@ const LOOK: Duration = Duration::from_micros(300);
 pub const HANG: Duration = Duration::from_mins(1);
 
 /// How a run ended.
-#[derive(Debug, Clone)]
 pub struct Finish {
     /// Exit code; `None` after a signal.
     pub code: Option<i32>,

@@ -3,7 +3,6 @@
 use sha2::{Digest, Sha256};
 
 /// A generator.
-#[derive(Debug, Clone)]
 pub struct Random {
     state: u64,
 }

@@ -11,7 +11,6 @@ use billow_study::platform::error::Result;
 use super::trial::{Fault, Trial};
 
 /// Sums of one kind.
-#[derive(Debug)]
 pub struct Tally {
     /// Name of the kind.
     pub kind: String,

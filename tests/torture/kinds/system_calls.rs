@@ -29,7 +29,6 @@ const ENOSPC: i32 = 28;
 const EDQUOT: i32 = 122;
 
 /// One disturbance.
-#[derive(Debug, Clone)]
 struct Disturbance {
     name: &'static str,
     mode: &'static str,

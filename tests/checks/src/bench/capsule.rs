@@ -25,7 +25,6 @@ const SCENE: &str = include_str!("../../../../scenes/capsule.json");
 const END_TIME: &str = "solver.end_time=\"1.6 s\"";
 
 /// The capsule of one mesh.
-#[derive(Debug, Clone)]
 pub(super) struct Capsule {
     /// Elements along each edge of the pattern, n.
     pub(super) subdivisions: u32,
@@ -50,7 +49,6 @@ impl Capsule {
 }
 
 /// A running capsule, with the cost so far.
-#[derive(Clone)]
 pub(super) struct Progress<'a> {
     capsule: &'a Capsule,
     pub(super) film: FilmRun,

@@ -61,7 +61,7 @@ pub(super) fn measure(capsule: &Capsule, name: &str, run: &FilmRun) -> Result<Ro
 }
 
 /// The stopwatch of the bench: total wall time of each stage of a step.
-#[derive(Debug, Default)]
+#[derive(Default)]
 struct Clock {
     totals: [Duration; Stage::ALL.len()],
     running: Option<(Stage, Instant)>,

@@ -40,7 +40,6 @@ pub fn plate(
 }
 
 /// What was recorded of a run.
-#[derive(Debug, Clone)]
 pub struct RunRecord {
     /// Most intersections at a sample.
     intersections: usize,

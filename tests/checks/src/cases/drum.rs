@@ -49,7 +49,6 @@ fn ringing_frequency(
 }
 
 /// A mode of the drum.
-#[derive(Debug, Clone, Copy)]
 pub struct DrumMode {
     /// Number of nodal diameters.
     pub diameters: f64,

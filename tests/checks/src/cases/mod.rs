@@ -78,7 +78,6 @@ pub struct Case {
 }
 
 /// The result of a case.
-#[derive(Debug, Clone)]
 pub struct Judged {
     /// Its name.
     pub name: &'static str,

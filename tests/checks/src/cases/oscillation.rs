@@ -36,7 +36,6 @@ pub fn frequency(
 }
 
 /// An extremum of a signal.
-#[derive(Debug, Clone, Copy)]
 pub struct Extremum {
     /// Time, s.
     pub time: f64,

@@ -13,7 +13,6 @@ use std::ops::ControlFlow;
 use super::prelude::*;
 
 /// How cases are run: as they are, or with a deliberate fault that a case must detect.
-#[derive(Debug, Clone, Copy)]
 pub struct Rig {
     /// The fault; tests only.
     pub fault: Option<Fault>,

@@ -29,7 +29,6 @@ pub fn radial_disc(rings: u32, around: u32, radius: f64) -> Shell {
 }
 
 /// A frustum of film closed by two flat circular caps.
-#[derive(Debug, Clone)]
 pub struct CappedFrustum {
     /// The film.
     pub shell: Shell,

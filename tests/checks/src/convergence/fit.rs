@@ -24,7 +24,6 @@ const FITS: usize = 400;
 const QUANTILE: usize = FITS * 95 / 100;
 
 /// A measure on one mesh.
-#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Level {
     pub(super) subdivisions: u32,
     /// Value: the median of its runs.
@@ -35,7 +34,6 @@ pub(super) struct Level {
 }
 
 /// The limit of a measure.
-#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Fit {
     /// f₀.
     pub(super) limit: f64,
@@ -87,7 +85,6 @@ pub(super) fn fit(levels: &[Level]) -> Option<Fit> {
 }
 
 /// One least-squares fit.
-#[derive(Clone, Copy)]
 struct Candidate {
     limit: f64,
     order: f64,

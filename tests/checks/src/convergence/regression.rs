@@ -18,7 +18,7 @@ const PENALTIES: [f64; 10] = [0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0,
 pub(super) type Point = ([f64; FEATURES], f64);
 
 /// The bias as a linear function of the coordinates.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug)]
 pub(super) struct Regression {
     /// b: the bias at u = 0.
     pub(super) intercept: f64,

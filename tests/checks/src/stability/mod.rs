@@ -22,7 +22,7 @@ mod picture;
 mod scenes;
 
 /// How a scene is integrated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum Method {
     /// Film with this integrator.
     Film(IntegratorKind),

@@ -16,7 +16,7 @@ use crate::harness::random::Random;
 const BLOCK: usize = 512;
 
 /// What `doctor` must say about a damage.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Expect {
     /// It is a fault: exit code 1.
     Fault,

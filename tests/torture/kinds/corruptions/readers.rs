@@ -29,7 +29,7 @@ const READERS: [&str; 11] = [
 const NO_FINDINGS: &str = "\"findings\":[]";
 
 /// An answer: stdout, the picture, stderr.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(PartialEq)]
 pub struct Answer {
     stdout: String,
     picture: Vec<u8>,

@@ -6,23 +6,21 @@ use std::process::Command;
 use std::time::Duration;
 
 use super::Corruptions;
-use crate::harness::check;
 use crate::harness::place::Place;
 use crate::harness::program::{self, BILLOW, HANG};
 use crate::harness::studies;
 use crate::harness::trial::{Fault, Trial};
 
 /// Number of these trials.
-pub const NUMBER: usize = 8;
+pub const NUMBER: usize = 7;
 
 /// Makes the trial of that number.
 pub fn trial(kind: &Corruptions, number: usize, place: &Place) -> Trial {
     match number {
         0 => lock_is_a_link(kind, place),
         1 => lock_is_a_folder(kind, place),
-        2 => same_process_id(kind, place),
-        3 => read_only(kind, place),
-        _ => deleted_during_a_run(place, number - 4),
+        2 => read_only(kind, place),
+        _ => deleted_during_a_run(place, number - 3),
     }
 }
 
@@ -63,30 +61,6 @@ fn lock_is_a_folder(kind: &Corruptions, place: &Place) -> Trial {
     program::run(&place, &["doctor", "results/s"]).check_refusal(&mut trial, "doctor", &[0, 1]);
     fs::remove_dir(&lock).expect("the folder");
     kind.check_repair(&mut trial, &place, super::Expect::Harmless);
-    trial
-}
-
-/// A dead process with the id of this one left temporary files under every name that this one uses.
-fn same_process_id(kind: &Corruptions, place: &Place) -> Trial {
-    let mut trial = Trial::new("temporary files of a dead process with the same id");
-    let place = kind.copy(place, "damaged");
-    let target = kind.target(&place);
-    let history = target.history(&target.job);
-    fs::remove_file(&history).expect("a history");
-    fs::remove_file(place.results().join("summary.parquet")).expect("a table");
-    // The shell replaces itself: the program has the id that the names hold.
-    let script = "for n in $(seq 0 40); do
-          for name in study.json summary.parquet lock; do : > results/s/.$name.$$-$n.tmp; done
-          : > \"$1/.$2.$$-$n.tmp\"
-        done; exec \"$0\" run s.json --quiet";
-    let folder = history.parent().expect("a folder").to_string_lossy().into_owned();
-    let name = history.file_name().expect("a name").to_string_lossy().into_owned();
-    let mut command = Command::new("sh");
-    command.args(["-c", script, BILLOW, &folder, &name]).current_dir(place.path());
-    let finish = program::start(&place, command).finish(HANG);
-    finish.check_refusal(&mut trial, "run", &[0]);
-    kind.check_end(&mut trial, &place, "after run");
-    check::check_temporary_files(&mut trial, &place);
     trial
 }
 

@@ -1,6 +1,6 @@
 //! Changes of the structure of a JSON file.
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use crate::harness::random::Random;
 
@@ -43,8 +43,10 @@ const DEEP: usize = 300;
 pub fn mutated(value: &Value, random: &mut Random) -> Vec<u8> {
     let mut value = value.clone();
     for _ in 0..=random.below(MAX_CHANGES) {
-        let target = random.below(size(&value));
-        change(&mut value, target, random);
+        let mut places = Vec::new();
+        list(&value, String::new(), &mut places);
+        let (place, other) = (random.pick(&places).clone(), random.pick(&places).clone());
+        change(&mut value, &place, &other, random);
     }
     let text = if random.below(2) == 0 {
         serde_json::to_string(&value)
@@ -54,49 +56,47 @@ pub fn mutated(value: &Value, random: &mut Random) -> Vec<u8> {
     text.unwrap_or_default().into_bytes()
 }
 
-/// Number of values in a tree.
-fn size(value: &Value) -> usize {
-    1 + match value {
-        Value::Array(items) => items.iter().map(size).sum(),
-        Value::Object(members) => members.values().map(size).sum::<usize>(),
-        _ => 0,
-    }
-}
-
-/// Changes the value with that number, counted from the root.
-fn change(value: &mut Value, target: usize, random: &mut Random) {
-    if target == 0 {
-        return change_here(value, random);
-    }
-    let mut rest = target - 1;
-    let children: Vec<&mut Value> = match value {
-        Value::Array(items) => items.iter_mut().collect(),
-        Value::Object(members) => members.values_mut().collect(),
-        _ => return,
-    };
-    for child in children {
-        let size = size(child);
-        if rest < size {
-            return change(child, rest, random);
-        }
-        rest -= size;
-    }
-}
-
-fn change_here(value: &mut Value, random: &mut Random) {
+/// The JSON pointers of a value and of all values in it.
+fn list(value: &Value, at: String, places: &mut Vec<String>) {
     match value {
-        Value::Object(members) if random.below(4) > 0 => change_members(members, random),
-        Value::Array(items) if !items.is_empty() && random.below(4) > 0 => {
-            change_items(items, random);
+        Value::Array(items) => {
+            items.iter().enumerate().for_each(|(index, item)| {
+                list(item, format!("{at}/{index}"), places);
+            });
         }
-        Value::Number(number) if random.below(4) > 0 => {
-            *value = number_value(number.as_f64().unwrap_or(1.0) * random.pick(&SCALES));
+        Value::Object(members) => {
+            members.iter().for_each(|(name, member)| list(member, format!("{at}/{name}"), places));
         }
-        Value::String(text) if random.below(4) > 0 => {
-            let other = scaled_text(text, *random.pick(&SCALES));
-            *value = other.map_or_else(|| other_value(random), Value::String);
+        _ => {}
+    }
+    places.push(at);
+}
+
+/// Changes the value at a place, or its name; `other`: another place.
+fn change(value: &mut Value, place: &str, other: &str, random: &mut Random) {
+    let other = value.pointer(other).cloned().unwrap_or_default();
+    let (parent, name) = place.rsplit_once('/').unwrap_or_default();
+    match (random.below(6), value.pointer_mut(parent)) {
+        (0, Some(Value::Object(members))) => drop(members.remove(name)),
+        (1, Some(Value::Object(members))) => {
+            let member = members.remove(name).unwrap_or_default();
+            members.insert(format!("{name}s"), member);
         }
-        _ => *value = other_value(random),
+        (0 | 1, Some(Value::Array(items))) if !items.is_empty() => {
+            items.remove(random.below(items.len()));
+        }
+        (2, Some(Value::Array(items))) => items.push(other),
+        (kind, _) => {
+            let Some(here) = value.pointer_mut(place) else { return };
+            *here = match here {
+                _ if kind == 2 => other,
+                Value::Number(number) if kind > 3 => {
+                    number_value(number.as_f64().unwrap_or(1.0) * random.pick(&SCALES))
+                }
+                Value::String(text) if kind > 3 => scaled_text(text, *random.pick(&SCALES)),
+                _ => other_value(random),
+            };
+        }
     }
 }
 
@@ -107,47 +107,12 @@ fn number_value(number: f64) -> Value {
     integer.map_or_else(|| json!(number), |integer| json!(integer))
 }
 
-/// A text that begins with a number, as in "500 mm", with another number.
-fn scaled_text(text: &str, scale: f64) -> Option<String> {
-    let (number, unit) = text.split_once(' ')?;
-    let number: f64 = number.parse().ok()?;
-    Some(format!("{} {unit}", number * scale))
-}
-
-fn change_members(members: &mut Map<String, Value>, random: &mut Random) {
-    let names: Vec<String> = members.keys().cloned().collect();
-    if names.is_empty() {
-        return drop(members.insert("x".to_owned(), other_value(random)));
-    }
-    let name = random.pick(&names).clone();
-    let other = random.pick(&names).clone();
-    match random.below(5) {
-        0 => drop(members.remove(&name)),
-        1 => {
-            let value = members.remove(&name).unwrap_or_default();
-            members.insert(format!("{name}s"), value);
-        }
-        2 => {
-            let (a, b) = (members[&name].clone(), members[&other].clone());
-            members.insert(name, b);
-            members.insert(other, a);
-        }
-        3 => {
-            let copy = members[&name].clone();
-            members.insert(other, copy);
-        }
-        _ => drop(members.insert(name, other_value(random))),
-    }
-}
-
-fn change_items(items: &mut Vec<Value>, random: &mut Random) {
-    let (a, b) = (random.below(items.len()), random.below(items.len()));
-    match random.below(5) {
-        0 => drop(items.remove(a)),
-        1 => items.insert(a, items[b].clone()),
-        2 => items.swap(a, b),
-        3 => items.clear(),
-        _ => items[a] = other_value(random),
+/// A text that begins with a number, as in "500 mm", with another number; any other text is doubled.
+fn scaled_text(text: &str, scale: f64) -> Value {
+    let parts = text.split_once(' ');
+    match parts.and_then(|(number, unit)| Some((number.parse::<f64>().ok()?, unit))) {
+        Some((number, unit)) => json!(format!("{} {unit}", number * scale)),
+        None => json!(format!("{text}{text}")),
     }
 }
 
@@ -157,12 +122,11 @@ fn other_value(random: &mut Random) -> Value {
         1 => json!(random.below(2) == 0),
         2..6 => json!(random.pick(&NUMBERS)),
         6..9 => json!(random.pick(&TEXTS)),
-        9 => json!([]),
-        10 => json!({}),
-        _ => match random.below(4) {
-            0 => json!("x".repeat(LONG)),
-            1 => json!(vec![1; LONG]),
-            2 => (0..DEEP).fold(json!(1), |inner, _| json!([inner])),
+        9 => json!(random.pick(&[json!([]), json!({})])),
+        10 => json!("x".repeat(LONG)),
+        _ => match random.below(3) {
+            0 => json!(vec![1; LONG]),
+            1 => (0..DEEP).fold(json!(1), |inner, _| json!([inner])),
             _ => json!({ "from": 0, "to": 1e9, "step": 1e-3 }),
         },
     }

@@ -1,4 +1,4 @@
-//! Mutated studies, scenes, OBJ files and checkpoints: a result or a message, never a panic, an abort
+//! Mutated studies, scenes and checkpoints: a result or a message, never a panic, an abort
 //! or a hang.
 
 use std::fs;
@@ -16,7 +16,6 @@ use crate::harness::trial::{Fault, Kind, Trial};
 
 pub mod bytes;
 mod json;
-mod obj;
 
 /// Number of mutated inputs.
 const TRIALS: usize = 10_000;
@@ -39,7 +38,7 @@ struct Input {
 pub struct Mutations {
     studies: Vec<Input>,
     scenes: Vec<Input>,
-    /// OBJ files by name.
+    /// OBJ files of the scenes, by name.
     meshes: Vec<(String, Vec<u8>)>,
     /// A scene and its checkpoint.
     capsule: Value,
@@ -99,8 +98,7 @@ impl Kind for Mutations {
     fn trial(&self, number: usize, random: &mut Random, place: &Place) -> Trial {
         let mut trial = match number % 10 {
             0..4 => self.study(random, place),
-            4..7 => self.scene(random, place),
-            7..9 => self.mesh(random, place),
+            4..8 => self.scene(random, place),
             _ => self.checkpoint(random, place),
         };
         if trial.longest > LIMIT {
@@ -110,7 +108,7 @@ impl Kind for Mutations {
     }
 
     fn note(&self) -> String {
-        "studies, scenes, OBJ files, checkpoints".to_owned()
+        "studies, scenes, checkpoints".to_owned()
     }
 }
 
@@ -143,22 +141,6 @@ impl Mutations {
         let mut trial = Trial::new(format!("scene {}", input.name));
         self.write_meshes(place);
         place.write("scene.json", &mutated_json(&input.value, random));
-        check(&mut trial, "solve", &solve(place), &[0, 1, 2]);
-        trial
-    }
-
-    /// A shipped scene with a mutated mesh.
-    fn mesh(&self, random: &mut Random, place: &Place) -> Trial {
-        let (name, text) = random.pick(&self.meshes);
-        let mut trial = Trial::new(format!("mesh {name}"));
-        self.write_meshes(place);
-        place.write(name, &obj::mutated(text, random));
-        let uses = |scene: &&Input| scene.value["mesh"].to_string().contains(name.as_str());
-        let Some(scene) = self.scenes.iter().find(uses) else {
-            trial.skipped = Some(format!("no scene uses {name}"));
-            return trial;
-        };
-        place.write("scene.json", scene.value.to_string().as_bytes());
         check(&mut trial, "solve", &solve(place), &[0, 1, 2]);
         trial
     }
