@@ -18,6 +18,7 @@ use billow_study::platform::memory;
 use billow_study::scene::file::SceneFile;
 
 use super::{Row, cost};
+use crate::cases::rig::stopped;
 
 /// The shipped scene.
 const SCENE: &str = include_str!("../../../../scenes/capsule.json");
@@ -87,13 +88,7 @@ impl<'a> Progress<'a> {
         let more = core_seconds().zip(core).map(|(now, then)| now - then);
         self.on_core = self.on_core.zip(more).map(|(before, more)| before + more);
         match end {
-            Some(Stop::Failed(failure)) => Err(Error::JobsFailed(format!(
-                "n {}: {} at {} s: {}",
-                self.capsule.subdivisions,
-                failure.kind.name(),
-                failure.time,
-                failure.place
-            ))),
+            Some(Stop::Failed(failure)) => Err(Error::JobsFailed(stopped(&failure))),
             _ => Ok(()),
         }
     }

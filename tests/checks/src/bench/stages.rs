@@ -16,6 +16,7 @@ use billow_study::platform::error::{Error, Result};
 
 use super::capsule::Capsule;
 use super::{REPEATS, Row, cost};
+use crate::cases::rig::stopped;
 
 /// Steps that are timed: whole blocks of 50 steps of the tunnelling monitor, fewer on a large mesh.
 const STEPS: [u64; 2] = [500, 200];
@@ -95,14 +96,9 @@ fn take_steps(
     loop {
         let to = next_stop(timeline, &breakpoints, time);
         let phase = timeline.phase(time, to);
-        let arrived = film.advance_timed(to, &phase, &mut steps, stopwatch).map_err(|failure| {
-            Error::JobsFailed(format!(
-                "{} at {} s: {}",
-                failure.kind.name(),
-                failure.time,
-                failure.place
-            ))
-        })?;
+        let arrived = film
+            .advance_timed(to, &phase, &mut steps, stopwatch)
+            .map_err(|failure| Error::JobsFailed(stopped(&failure)))?;
         if !arrived {
             return Ok(());
         }

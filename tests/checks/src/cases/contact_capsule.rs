@@ -16,24 +16,24 @@ use billow_solver::scene::monitor_settings::MonitorSettings;
 
 use super::contact_rig::unrecovered_contact_energy;
 use super::prelude::*;
+use super::rig::stopped;
 
 /// The run of a stowed capsule with this contact.
-pub fn stowed(rig: &Rig, scene: &Scene, contact: FilmContact) -> Result<FilmRun, String> {
-    FilmRun::from_scene(rig.instruction_set, scene, DEFAULT_CFL, Some(contact))
-        .map_err(|e| e.to_string())
+pub fn stowed(rig: &Rig, scene: &Scene, contact: FilmContact) -> Result<FilmRun> {
+    Ok(FilmRun::from_scene(rig.instruction_set, scene, DEFAULT_CFL, Some(contact))?)
 }
 
 /// Runs a scene with this contact to its end, or to the step limit of `implicit`.
-fn deploy(rig: &Rig, scene: &Scene, contact: FilmContact) -> Result<(FilmRun, Deployment), String> {
+fn deploy(rig: &Rig, scene: &Scene, contact: FilmContact) -> Result<(FilmRun, Deployment)> {
     let mut run = stowed(rig, scene, contact)?;
     run.film = rig.faulty(run.film);
     let deployment = run::run(&mut run, &Timeline::new(scene), &mut Unobserved);
     match &deployment.stop {
         Stop::Done => Ok((run, deployment)),
-        Stop::Cancelled => Err("cancelled".to_owned()),
+        Stop::Cancelled => Err("cancelled".into()),
         Stop::Failed(failure) => match (scene.solver.integrator, failure.kind) {
             (IntegratorKind::Implicit, FailureKind::StepLimit) => Ok((run, deployment)),
-            _ => Err(format!("{} at {} s: {}", failure.kind.name(), failure.time, failure.place)),
+            _ => Err(stopped(failure).into()),
         },
     }
 }

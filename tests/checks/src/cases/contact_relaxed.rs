@@ -28,12 +28,10 @@ const LATEST: f64 = 5.0;
 const CHECK_INTERVAL: f64 = 0.01;
 
 /// The stowed capsule at rest under a fixed pressure (Pa).
-fn relaxed(rig: &Rig, scene: &Scene, pressure: f64) -> Result<(FilmSimulation, Mesh), String> {
+fn relaxed(rig: &Rig, scene: &Scene, pressure: f64) -> Result<(FilmSimulation, Mesh)> {
     let stowed = Shape::Stowed(scene.design.stowed_height);
-    let (film, mesh) = capsule::film_scene(rig.instruction_set, scene, stowed, DEFAULT_CFL)
-        .map_err(|error| error.to_string())?;
-    let contact = capsule::resolved_contact(FilmContact::default(), &scene.design)
-        .map_err(|error| error.to_string())?;
+    let (film, mesh) = capsule::film_scene(rig.instruction_set, scene, stowed, DEFAULT_CFL)?;
+    let contact = capsule::resolved_contact(FilmContact::default(), &scene.design)?;
     let mut film =
         FilmScene { filling: Filling::Pressure(pressure), contact: Some(contact), ..film };
     film.solver.mass_damping = DAMPING;
@@ -44,7 +42,7 @@ fn relaxed(rig: &Rig, scene: &Scene, pressure: f64) -> Result<(FilmSimulation, M
     while quiet_checks < 2 {
         let target = film.view().state.time + CHECK_INTERVAL;
         if target > LATEST {
-            return Err(format!("not at rest at {LATEST} s"));
+            return Err(format!("not at rest at {LATEST} s").into());
         }
         advance(&mut film, target, &Phase::default())?;
         let settled =
@@ -81,8 +79,7 @@ fn compare(film: &FilmView<'_>, mesh: &Mesh, expected: &StaticState) -> Vec<Row>
 pub fn deployed_equals_inflated(rig: &Rig, subdivisions: u32) -> Outcome {
     let scene = paper::capsule(subdivisions, 1.0);
     let pressures = numbers("deployed_equals_inflated/pressures");
-    let inflated = static_states(rig.instruction_set, &scene, &pressures)
-        .map_err(|error| error.to_string())?;
+    let inflated = static_states(rig.instruction_set, &scene, &pressures)?;
     let mut judged = Vec::new();
     for expected in &inflated {
         let (film, mesh) = relaxed(rig, &scene, expected.overpressure)?;
@@ -102,8 +99,7 @@ pub fn end_state_polygon(rig: &Rig) -> Outcome {
             rows("end_state_polygon").into_iter().filter(of_mesh).rev().collect();
         let pressures: Vec<f64> = rows.iter().map(|row| row[1]).collect();
         let scene = paper::capsule(subdivisions, 0.3);
-        let states = static_states(rig.instruction_set, &scene, &pressures)
-            .map_err(|error| error.to_string())?;
+        let states = static_states(rig.instruction_set, &scene, &pressures)?;
         for (row, state) in rows.iter().zip(states) {
             let sizes = [state.volume, state.z_rim, state.strain_energy];
             let names = ["volume, m3", "rim height, m", "strain energy, J"];

@@ -55,7 +55,7 @@ pub fn run_recorded(
     end: f64,
     samples: u32,
     phase: &Phase,
-) -> Result<RunRecord, String> {
+) -> Result<RunRecord> {
     let mut record = RunRecord { intersections: 0, pairs: 0, ledgers: vec![film.view().ledger()] };
     for sample in 1..=samples {
         advance(film, end * f64::from(sample) / f64::from(samples), phase)?;

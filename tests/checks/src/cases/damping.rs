@@ -30,7 +30,7 @@ struct Vibration {
 
 /// A standing wave along a strip of equal elements, held in its transverse directions. The first
 /// sixteen half periods are left out: film that creeps starts out of step.
-fn vibrate(rig: &Rig, film: Film, cfl: f64) -> Result<Vibration, String> {
+fn vibrate(rig: &Rig, film: Film, cfl: f64) -> Result<Vibration> {
     let (columns, length) = (40_u32, 1.0);
     let shell = strip(columns, length, 0.05);
     let all = (0..2 * (columns + 1)).collect();

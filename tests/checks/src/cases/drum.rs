@@ -28,7 +28,7 @@ fn displaced(
     shape: &[f64],
     amplitude: f64,
     (integrator, cfl): (IntegratorKind, f64),
-) -> Result<FilmSimulation, String> {
+) -> Result<FilmSimulation> {
     for (position, shape) in scene.shell.positions.iter_mut().zip(shape) {
         position.z = amplitude * shape;
     }
@@ -41,7 +41,7 @@ fn ringing_frequency(
     film: &mut FilmSimulation,
     shape: &[f64],
     (interval, crossings): (f64, usize),
-) -> Result<f64, String> {
+) -> Result<f64> {
     frequency(film, interval, crossings, |film| {
         let heights = film.state.positions.z.iter().zip(shape);
         heights.zip(&film.system.model.mass).map(|((z, shape), mass)| mass * z * shape).sum()
@@ -78,7 +78,7 @@ pub fn drum(
     mode: &DrumMode,
     rings: u32,
     (integrator, cfl, samples): (IntegratorKind, f64, f64),
-) -> Result<(f64, FilmSimulation), String> {
+) -> Result<(f64, FilmSimulation)> {
     let [radius, tension, share] = entry("stretched_disc", ["radius", "tension", "amplitude"]);
     let film = Film::PAPER_ELASTIC;
     // S = E/(1−ν) e for an equal biaxial strain e.

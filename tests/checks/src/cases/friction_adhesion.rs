@@ -55,7 +55,7 @@ pub fn friction(rig: &Rig) -> Outcome {
 
 /// Heights of the lowest and the highest node of the upper sheet, m, after a pull (Pa) against this
 /// pull-off pressure (Pa).
-fn pulled(rig: &Rig, pull: f64, pressure: f64) -> Result<[f64; 2], String> {
+fn pulled(rig: &Rig, pull: f64, pressure: f64) -> Result<[f64; 2]> {
     let low = sheet(16, 16, 0.4, 0.4);
     let high = moved(sheet(4, 4, 0.2, 0.2), |x| x + Vector3::new(0.104, 0.109, DISTANCE));
     let (scene, split) = two_sheets(low, high);

@@ -18,7 +18,7 @@ use billow_solver::models::run::Model;
 use billow_solver::scene::Species;
 
 use super::prelude::*;
-use super::rig::{inflow, temperature};
+use super::rig::{inflow, stopped, temperature};
 use super::row::self_convergence_order;
 use super::shapes::gas_column;
 
@@ -46,14 +46,12 @@ impl Body {
         }
     }
 
-    fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), String> {
+    fn advance(&mut self, target: f64, phase: &Phase) -> Result<()> {
         match self {
             Self::Film(film) => advance(film, target, phase),
             Self::Piston(run, packed) => {
                 let phase = Phase { packed: *packed, ..phase.clone() };
-                run.advance(target, &phase).map_err(|failure| {
-                    format!("{:?} at {} s: {}", failure.kind, failure.time, failure.place)
-                })
+                run.advance(target, &phase).map_err(|failure| stopped(&failure).into())
             }
         }
     }
@@ -104,7 +102,7 @@ fn vessels(
     height: f64,
     supply: GasSupply,
     [mass, temperature]: [f64; 2],
-) -> Result<[Body; 2], String> {
+) -> Result<[Body; 2]> {
     let shell = gas_column(AREA, height);
     let gas = Gas::new(&supply, FILM_TEMPERATURE, shell.reference_area());
     let state = PistonState { height: 1.0, speed: 0.0, gas: gas.at_temperature(mass, temperature) };
@@ -209,7 +207,7 @@ struct Plate {
 
 impl Plate {
     /// As film, with an integrator at a CFL number.
-    fn film(&self, rig: &Rig, integrator: IntegratorKind, cfl: f64) -> Result<Body, String> {
+    fn film(&self, rig: &Rig, integrator: IntegratorKind, cfl: f64) -> Result<Body> {
         let shell = gas_column(self.area, self.height);
         // The mass of the plate includes its film.
         let of_film = 0.5 * shell.reference_area() * Film::PAPER_ELASTIC.area_density();
@@ -272,11 +270,7 @@ fn injected_start() -> Plate {
 
 /// The plate driven by an inflow, from the closed form at 1 ms to 50 ms, by film with an integrator at a CFL number; and
 /// its height, m.
-pub fn injected(
-    rig: &Rig,
-    integrator: IntegratorKind,
-    cfl: f64,
-) -> Result<(FilmSimulation, f64), String> {
+pub fn injected(rig: &Rig, integrator: IntegratorKind, cfl: f64) -> Result<(FilmSimulation, f64)> {
     let [start, end] = entry("injected_piston", ["start", "end"]);
     let mut body = injected_start().film(rig, integrator, cfl)?;
     body.advance(end - start, &injection())?;
@@ -288,7 +282,7 @@ pub fn injected(
 }
 
 /// The same by the model piston: its steps, and its height, m.
-pub fn injected_model(stepping: Stepping) -> Result<(u64, f64), String> {
+pub fn injected_model(stepping: Stepping) -> Result<(u64, f64)> {
     let mut body = injected_start().piston(number("injected_piston/start"), stepping);
     body.advance(number("injected_piston/end"), &injection())?;
     let [height, _] = body.motion();
@@ -367,7 +361,7 @@ pub fn injected_piston_dead_volume(rig: &Rig) -> Outcome {
         supply: nitrogen_supply(),
         temperature: FILM_TEMPERATURE,
     };
-    let run = |mut body: Body| -> Result<f64, String> {
+    let run = |mut body: Body| -> Result<f64> {
         body.advance(end, &injection())?;
         Ok(body.motion()[0] - height)
     };
@@ -404,7 +398,7 @@ pub fn gas_spring(rig: &Rig) -> Outcome {
         };
         // After one period the plate is at rest: the remaining speed over the acceleration is the error of the period.
         let force = pressure * area * (libm::pow(1.0 + amplitude, -gamma) - 1.0);
-        let period = |mut body: Body| -> Result<f64, String> {
+        let period = |mut body: Body| -> Result<f64> {
             body.advance(ratio * linear, &Phase::default())?;
             Ok(ratio - body.motion()[1] / (force / mass) / linear)
         };

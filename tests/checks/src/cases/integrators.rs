@@ -25,11 +25,13 @@ fn row(
     scene: &str,
     kind: IntegratorKind,
     exact: f64,
-    run: impl Fn(f64) -> Result<f64, String>,
-) -> Result<Row, String> {
+    run: impl Fn(f64) -> Result<f64>,
+) -> Result<Row> {
     let name = entry(kind).name;
     let [step, band, least] = numbers(&format!("integrators/{scene}/{name}"))[..] else {
-        return Err(format!("integrators/{scene}/{name} in tests/reference: not three numbers"));
+        return Err(
+            format!("integrators/{scene}/{name} in tests/reference: not three numbers").into()
+        );
     };
     let values = [run(4.0 * step)?, run(2.0 * step)?, run(step)?];
     let judged = Row::new(name, values[2], exact, band);

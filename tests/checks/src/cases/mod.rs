@@ -61,8 +61,11 @@ pub enum Tier {
     Long,
 }
 
-/// The rows of a case, or the reason why it has none.
-pub type Outcome = Result<Vec<Row>, String>;
+/// A result, or the reason why there is none.
+pub type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
+
+/// The rows of a case.
+pub type Outcome = Result<Vec<Row>>;
 
 /// One reference case.
 #[derive(Debug, Clone, Copy)]
@@ -102,7 +105,7 @@ impl Case {
         let rows = match outcome {
             Ok(Ok(rows)) if !rows.is_empty() => rows,
             Ok(Ok(_)) => vec![Row::failed("the case has no rows")],
-            Ok(Err(reason)) => vec![Row::failed(&reason)],
+            Ok(Err(reason)) => vec![Row::failed(&reason.to_string())],
             Err(panic) => vec![Row::failed(&format!("panicked: {}", message(panic.as_ref())))],
         };
         Judged { name: self.name, rows, seconds: start.elapsed().as_secs_f64() }

@@ -99,12 +99,7 @@ fn when(samples: &[Sample], length: f64, value: impl Fn(&Sample) -> f64) -> f64 
 }
 
 /// Energy kept and coherent share of one start at each of these l/L, and the largest residual of its energy ledger.
-fn unrolled(
-    rig: &Rig,
-    cells: u32,
-    seed: u64,
-    lengths: &[f64],
-) -> Result<(Vec<[f64; 2]>, f64), String> {
+fn unrolled(rig: &Rig, cells: u32, seed: u64, lengths: &[f64]) -> Result<(Vec<[f64; 2]>, f64)> {
     let arm = size("arm");
     let scene = folded(cells, seed);
     let mut film = rig.start(&scene)?;
@@ -148,14 +143,14 @@ pub fn moving_fold(rig: &Rig, cells: u32, share_floors: &str) -> Outcome {
     let lengths = numbers("moving_fold/lengths");
     let floors = ["energy_kept", share_floors].map(|name| numbers(&format!("moving_fold/{name}")));
     let starts = SEEDS.iter().map(|seed| unrolled(rig, cells, *seed, &lengths));
-    let starts = starts.collect::<Result<Vec<_>, String>>()?;
+    let starts = starts.collect::<Result<Vec<_>>>()?;
     let mut rows = Vec::new();
     for (place, length) in lengths.iter().enumerate() {
         for (index, name) in ["energy kept", "coherent share"].into_iter().enumerate() {
             let mut sorted: Vec<f64> = starts.iter().map(|start| start.0[place][index]).collect();
             // NaN is the first: no median stands for a start that failed.
             sorted.sort_by(|a, b| b.is_nan().cmp(&a.is_nan()).then(a.total_cmp(b)));
-            let [least, .., most] = sorted[..] else { return Err("no starts".to_owned()) };
+            let [least, .., most] = sorted[..] else { return Err("no starts".into()) };
             let median = if least.is_nan() { least } else { sorted[sorted.len() / 2] };
             let (quantity, floor) =
                 (format!("L/{cells}, l/L {length}: {name}"), floors[index][place]);

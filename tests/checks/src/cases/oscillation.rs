@@ -13,7 +13,7 @@ pub fn frequency(
     interval: f64,
     crossings: usize,
     signal: impl Fn(&FilmView<'_>) -> f64,
-) -> Result<f64, String> {
+) -> Result<f64> {
     let (mut found, mut before) = (Vec::with_capacity(crossings), signal(&film.view()));
     for _ in 0..MAX_SAMPLES {
         let time = film.view().state.time;
@@ -32,7 +32,8 @@ pub fn frequency(
         "no oscillation: {} zero crossings until {} s",
         found.len(),
         film.view().state.time
-    ))
+    )
+    .into())
 }
 
 /// An extremum of a signal.
@@ -49,7 +50,7 @@ pub fn extrema(
     interval: f64,
     count: usize,
     signal: impl Fn(&FilmView<'_>) -> f64,
-) -> Result<Vec<Extremum>, String> {
+) -> Result<Vec<Extremum>> {
     let mut last = [signal(&film.view()); 3];
     let mut found = Vec::with_capacity(count);
     for sample in 1..MAX_SAMPLES {
@@ -66,5 +67,6 @@ pub fn extrema(
             }
         }
     }
-    Err(format!("no oscillation: {} extrema until {} s", found.len(), film.view().state.time))
+    Err(format!("no oscillation: {} extrema until {} s", found.len(), film.view().state.time)
+        .into())
 }

@@ -20,8 +20,8 @@ pub use billow_solver::scene::{
 };
 pub use nalgebra::Vector3;
 
-pub use super::Outcome;
 pub use super::contact_rig::{monitored_contact, plate, run_recorded};
 pub use super::reference::{entry, number, numbers, rows};
 pub use super::rig::{Rig, advance, compliant, equilibrium, held, inflated, mean};
 pub use super::row::{Row, each, refined, worse};
+pub use super::{Outcome, Result};

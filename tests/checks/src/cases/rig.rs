@@ -3,6 +3,7 @@
 
 use billow_solver::integrators::StoredIntegrator;
 use billow_solver::integrators::explicit::StoredExplicit;
+use billow_solver::output::outcome::Failure;
 use billow_solver::platform::fault_injection::Fault;
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::inflow::Inflow;
@@ -28,9 +29,9 @@ impl Default for Rig {
 
 impl Rig {
     /// The film of a scene at time 0.
-    pub fn start(&self, scene: &FilmScene) -> Result<FilmSimulation, String> {
+    pub fn start(&self, scene: &FilmScene) -> Result<FilmSimulation> {
         let film = capsule::start(&self.on_instruction_set(scene), &[]);
-        let film = film.map_err(|error| error.to_string())?;
+        let film = film?;
         Ok(self.faulty(film))
     }
 
@@ -65,10 +66,14 @@ pub fn inflow(rate: f64, temperature: f64) -> Phase {
     }
 }
 
+/// A failure in words.
+pub fn stopped(failure: &Failure) -> String {
+    format!("{} at {} s: {}", failure.kind.name(), failure.time, failure.place)
+}
+
 /// Advances film to a time, s.
-pub fn advance(film: &mut FilmSimulation, target: f64, phase: &Phase) -> Result<(), String> {
-    film.advance(target, phase)
-        .map_err(|failure| format!("{:?} at {} s: {}", failure.kind, failure.time, failure.place))
+pub fn advance(film: &mut FilmSimulation, target: f64, phase: &Phase) -> Result<()> {
+    film.advance(target, phase).map_err(|failure| stopped(&failure).into())
 }
 
 /// What central differences keep beside the state.
@@ -92,10 +97,9 @@ pub fn equilibrium(
     rig: &Rig,
     scene: &FilmScene,
     known: Option<(&StaticSolution, f64)>,
-) -> Result<StaticSolution, String> {
+) -> Result<StaticSolution> {
     let observer = &mut |_: &_| ControlFlow::Continue(());
-    statics::solve_from(&rig.on_instruction_set(scene), known, observer)
-        .map_err(|error| error.to_string())
+    Ok(statics::solve_from(&rig.on_instruction_set(scene), known, observer)?)
 }
 
 /// The static equilibrium of film under an overpressure (Pa).
@@ -105,7 +109,7 @@ pub fn inflated(
     film: Film,
     pressure: f64,
     supports: Vec<FilmSupport>,
-) -> Result<StaticSolution, String> {
+) -> Result<StaticSolution> {
     let filling = Filling::Pressure(pressure);
     equilibrium(rig, &FilmScene { filling, supports, ..free_film(shell, film) }, None)
 }

@@ -1,7 +1,7 @@
 //! One quantity of a case, compared with its reference.
 
-use super::Outcome;
 use super::reference::rows;
+use super::{Outcome, Result};
 
 /// One quantity and its verdict.
 #[derive(Debug, Clone, PartialEq)]
@@ -121,7 +121,7 @@ impl Row {
 
 /// The rows of every entry of a table of reference numbers.
 pub fn each(table: &str, of_entry: impl FnMut(Vec<f64>) -> Outcome) -> Outcome {
-    Ok(rows(table).into_iter().map(of_entry).collect::<Result<Vec<_>, _>>()?.concat())
+    Ok(rows(table).into_iter().map(of_entry).collect::<Result<Vec<_>>>()?.concat())
 }
 
 /// The rows of quantities (name, reference, band) on three steps or meshes, each half as coarse as the one before:
@@ -130,7 +130,7 @@ pub fn refined<S: AsRef<str>, const N: usize>(
     meshes: [u32; 3],
     quantities: [(S, f64, f64); N],
     least: Option<f64>,
-    mut run: impl FnMut(u32) -> Result<[f64; N], String>,
+    mut run: impl FnMut(u32) -> Result<[f64; N]>,
 ) -> Outcome {
     let found = [run(meshes[0])?, run(meshes[1])?, run(meshes[2])?];
     let row = |(index, (name, reference, band)): (usize, &(S, f64, f64))| {
@@ -146,7 +146,7 @@ pub fn converged<S: AsRef<str>, const N: usize>(
     meshes: [u32; 3],
     quantities: [(S, f64); N],
     [raw, band, least]: [f64; 3],
-    mut run: impl FnMut(u32) -> Result<[f64; N], String>,
+    mut run: impl FnMut(u32) -> Result<[f64; N]>,
 ) -> Outcome {
     let found = [run(meshes[0])?, run(meshes[1])?, run(meshes[2])?];
     let rows = |(index, (name, reference)): (usize, &(S, f64))| {

@@ -8,6 +8,7 @@ use billow_solver::models::film::Relaxation;
 
 use super::oscillation::{extrema, frequency};
 use super::prelude::*;
+use super::rig::stopped;
 use super::row::converged;
 
 /// Temperature of the gas, K. Chosen: that of the film, so that its mass follows from its pressure.
@@ -23,16 +24,14 @@ fn sphere(level: u32) -> Shell {
 }
 
 /// The sphere in equilibrium under an overpressure, Pa.
-fn equilibrium(rig: &Rig, level: u32, overpressure: f64) -> Result<FilmSimulation, String> {
+fn equilibrium(rig: &Rig, level: u32, overpressure: f64) -> Result<FilmSimulation> {
     let filling = Filling::Pressure(overpressure);
     let film =
         rig.start(&FilmScene { filling, ..free_film(sphere(level), Film::PAPER_ELASTIC) })?;
     // The remaining motion must be small against an amplitude of 1e-5 of the radius.
     let relaxation = Relaxation { max_kinetic_fraction: 1e-15, ..Relaxation::default() };
-    relaxation.relax_at(film, overpressure).map_err(|unsettled| {
-        let failure = &unsettled.failure;
-        format!("no equilibrium: {:?}, {}", failure.kind, failure.place)
-    })
+    let settled = relaxation.relax_at(film, overpressure);
+    settled.map_err(|unsettled| stopped(&unsettled.failure).into())
 }
 
 /// Gas of this pressure (Pa) in this volume (m³).
@@ -52,7 +51,7 @@ pub fn breathing_start(
     level: u32,
     pressure: f64,
     (integrator, cfl): (IntegratorKind, Option<f64>),
-) -> Result<(FilmSimulation, f64), String> {
+) -> Result<(FilmSimulation, f64)> {
     let rest = equilibrium(rig, level, pressure)?;
     let mut shell = sphere(level);
     shell.positions = rest.view().state.positions.iter().collect();
@@ -72,7 +71,7 @@ pub fn breathing_frequency(
     film: &mut FilmSimulation,
     volume: f64,
     interval: Option<f64>,
-) -> Result<f64, String> {
+) -> Result<f64> {
     let interval = interval.unwrap_or(film.view().next_step());
     frequency(film, interval, HALF_PERIODS + 1, |film| film.state.volume - volume)
 }
@@ -92,7 +91,7 @@ pub fn breathing_sphere(rig: &Rig, levels: [u32; 3]) -> Outcome {
 
 /// Largest λ − 1 and period (s) of a sphere released unstretched. Its gas has this pressure (Pa) at
 /// equilibrium.
-fn release(rig: &Rig, level: u32, pressure: f64) -> Result<[f64; 2], String> {
+fn release(rig: &Rig, level: u32, pressure: f64) -> Result<[f64; 2]> {
     let rest = equilibrium(rig, level, pressure)?;
     let empty = sphere(level);
     let start = empty.volume(|node| empty.positions[node as usize]);

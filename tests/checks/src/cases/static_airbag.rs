@@ -13,7 +13,7 @@ use super::prelude::*;
 const MAX_STEPS: u64 = 100_000;
 
 /// The static equilibrium of a quarter of the upper sheet with this number of cells along its side.
-pub fn inflated(rig: &Rig, cells: u32) -> Result<StaticSolution, String> {
+pub fn inflated(rig: &Rig, cells: u32) -> Result<StaticSolution> {
     equilibrium(rig, &quarter(cells), None)
 }
 
@@ -23,7 +23,7 @@ pub fn relaxed(
     rig: &Rig,
     cells: u32,
     (integrator, cfl): (IntegratorKind, f64),
-) -> Result<Result<(FilmSimulation, f64), Box<Unsettled>>, String> {
+) -> Result<std::result::Result<(FilmSimulation, f64), Box<Unsettled>>> {
     let mut scene = quarter(cells);
     let Filling::Pressure(pressure) = scene.filling else {
         unreachable!("the sheet is under a fixed overpressure")

@@ -40,7 +40,7 @@ fn sizes(state: &StaticSolution, capsule: &CappedFrustum) -> [f64; 5] {
 }
 
 /// Sizes at both pressures of the table. The higher pressure is solved first, the lower one from it.
-fn inflate(rig: &Rig, capsule: &CappedFrustum) -> Result<[[f64; 5]; 2], String> {
+fn inflate(rig: &Rig, capsule: &CappedFrustum) -> Result<[[f64; 5]; 2]> {
     let pressures = rows("end_state").into_iter().rev().map(|row| row[0]);
     let mut found = Vec::new();
     let mut last: Option<(StaticSolution, f64)> = None;
@@ -56,11 +56,7 @@ fn inflate(rig: &Rig, capsule: &CappedFrustum) -> Result<[[f64; 5]; 2], String> 
 }
 
 /// Rows of three meshes against the table, and of the differences between its pressures if they are judged.
-fn judge(
-    rig: &Rig,
-    mesh: impl Fn(u32) -> Result<CappedFrustum, String>,
-    differences: bool,
-) -> Outcome {
+fn judge(rig: &Rig, mesh: impl Fn(u32) -> Result<CappedFrustum>, differences: bool) -> Outcome {
     let (rows, bands) = (rows("end_state"), numbers("end_state/bands"));
     let band = if differences { number("end_state/difference_band") } else { f64::INFINITY };
     let quantities: [(String, f64, f64); 15] = core::array::from_fn(|index| {
@@ -98,9 +94,9 @@ pub fn aligned(rig: &Rig) -> Outcome {
 pub fn pattern(rig: &Rig) -> Outcome {
     let mesh = |subdivisions: u32| {
         let design = FoldDesign { caps: Caps::Circular, ..paper::design(subdivisions) };
-        let pattern = FoldPattern::new(&design).map_err(|error| error.to_string())?;
+        let pattern = FoldPattern::new(&design)?;
         let mesh = Mesh::new(&pattern, subdivisions, Shape::Erected);
-        let mesh = mesh.map_err(|error| error.to_string())?;
+        let mesh = mesh?;
         Ok(CappedFrustum {
             shell: Shell::of_mesh(&mesh),
             rims: [mesh.bottom_ring.clone(), mesh.top_ring.clone()],

@@ -74,7 +74,7 @@ pub fn cone(rig: &Rig) -> Outcome {
     let slope = (bottom - top) / height;
     let cos = 1.0 / (1.0 + slope * slope).sqrt();
     let mut largest = [0.0; 2];
-    let mut run = |along: u32| -> Result<[f64; 2], String> {
+    let mut run = |along: u32| -> Result<[f64; 2]> {
         let around = 4 * along;
         let end = ring_nodes(along, around);
         let supports = vec![

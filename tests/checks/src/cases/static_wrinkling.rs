@@ -21,7 +21,7 @@ const BEAM: f64 = 0.2;
 const STRAIN: f64 = 1e-4;
 
 /// 2M/(P h) of a beam whose curvature and force give about the requested k.
-fn bend(rig: &Rig, rows: u32, requested: f64) -> Result<f64, String> {
+fn bend(rig: &Rig, rows: u32, requested: f64) -> Result<f64> {
     let film = Film::PAPER_ELASTIC;
     let stiffness = film.youngs_modulus * film.thickness;
     // The whole section is stretched while k ≤ 1: P = E t h ε_mean, ε_max = ε_mean + κ h/2.
@@ -74,7 +74,7 @@ pub fn beam(rig: &Rig) -> Outcome {
 }
 
 /// Torque and wrinkle radius of an annulus in torsion by this angle, rad.
-fn twist(rig: &Rig, rings: u32, angle: f64) -> Result<[f64; 2], String> {
+fn twist(rig: &Rig, rings: u32, angle: f64) -> Result<[f64; 2]> {
     let [inner, outer, outward] =
         entry("annulus_torsion", ["inner_radius", "outer_radius", "outward"]);
     let around = 6 * rings;

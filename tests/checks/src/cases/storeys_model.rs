@@ -18,12 +18,11 @@ fn scene(end_time: f64) -> Scene {
     scene
 }
 
-fn run(rig: &Rig, scene: &Scene) -> Result<Deployment, String> {
-    let deployment = models::solve(rig.instruction_set, scene, &mut Unobserved)
-        .map_err(|error| error.to_string())?;
+fn run(rig: &Rig, scene: &Scene) -> Result<Deployment> {
+    let deployment = models::solve(rig.instruction_set, scene, &mut Unobserved)?;
     match deployment.stop {
         Stop::Done => Ok(deployment),
-        stop => Err(format!("{stop:?}")),
+        stop => Err(format!("{stop:?}").into()),
     }
 }
 
@@ -56,14 +55,14 @@ pub fn capsule(rig: &Rig) -> Outcome {
 /// Inextensible film without loss and heat has one time scale, (m H²/(ṁ cp T))^(1/3): eight times the rate
 /// halves the times.
 pub fn similarity(rig: &Rig) -> Outcome {
-    let time = |rate: f64, end: f64| -> Result<f64, String> {
+    let time = |rate: f64, end: f64| -> Result<f64> {
         let mut scene = scene(end);
         scene.film = Film::PAPER.elastic();
         scene.gas.heat_transfer = HeatTransfer::Coefficient(0.0);
         scene.gas.windows = vec![window(0.0, end, rate)];
         scene.outputs.sample_interval = end / 100.0;
         let time = run(rig, &scene)?.measures.t_50_z_rim;
-        time.ok_or_else(|| "half the height is not reached".to_owned())
+        Ok(time.ok_or("half the height is not reached")?)
     };
     let ratio = time(2e-3, 0.1)? / time(16e-3, 0.05)?;
     let band = number("storeys_model/similarity_band");

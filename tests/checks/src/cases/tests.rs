@@ -10,7 +10,7 @@ fn passing(_: &Rig) -> Outcome {
 }
 
 fn failing(_: &Rig) -> Outcome {
-    Err("no such thing".to_owned())
+    Err("no such thing".into())
 }
 
 fn panicking(_: &Rig) -> Outcome {

@@ -7,7 +7,7 @@ use billow_study::input::value::Value;
 use billow_study::job::Status;
 
 use super::meter::{Meter, add, quantity, scene, timed};
-use crate::cases::{Rig, static_airbag};
+use crate::cases::{Result, Rig, static_airbag};
 
 /// Cells along the side of a quarter of the airbag. With 96 the search finds another minimum, of higher energy.
 const CELLS: [u32; 5] = [4, 8, 16, 32, 64];
@@ -22,7 +22,7 @@ const RELAXATIONS: [(IntegratorKind, f64, u32); 3] = [
 
 /// Two squares sewn together and inflated. No closed form is known: the finest mesh is the reference. The search by
 /// Newton's method stands beside damped motion with each integrator.
-pub(super) fn square_airbag(rig: &Rig) -> Result<SceneRuns, String> {
+pub(super) fn square_airbag(rig: &Rig) -> Result<SceneRuns> {
     let quantities = vec![
         quantity("potential_energy", "J", "potential energy of a quarter of a sheet", None),
         quantity("height", "m", "height of the middle", None),

@@ -8,6 +8,8 @@ use billow_solver::scene::IntegratorKind;
 use billow_study::analysis::work_precision::{Ending, Outcome, Quantity, Run, SceneRuns};
 use billow_study::input::value::Value;
 
+use crate::cases::Result;
+
 /// A quantity of a scene.
 pub(super) fn quantity(name: &str, unit: &str, meaning: &str, exact: Option<f64>) -> Quantity {
     let [name, unit, meaning] = [name, unit, meaning].map(str::to_owned);
@@ -82,7 +84,7 @@ impl Meter {
 }
 
 /// Result and wall time, s.
-pub(super) fn timed<T>(body: impl FnOnce() -> Result<T, String>) -> Result<(T, f64), String> {
+pub(super) fn timed<T>(body: impl FnOnce() -> Result<T>) -> Result<(T, f64)> {
     let start = Instant::now();
     let value = body()?;
     Ok((value, start.elapsed().as_secs_f64()))

@@ -26,7 +26,7 @@ mod piston;
 mod vibrations;
 
 /// A scene: its name, and the function that runs it at every mesh and step, with every integrator that can.
-type Scene = (&'static str, fn(&Rig) -> std::result::Result<SceneRuns, String>);
+type Scene = (&'static str, fn(&Rig) -> crate::cases::Result<SceneRuns>);
 
 /// Every scene.
 const SCENES: [Scene; 4] = [

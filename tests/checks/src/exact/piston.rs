@@ -7,7 +7,7 @@ use billow_study::input::value::Value;
 
 use super::meter::{Meter, add, quantity, scene, timed};
 use crate::cases::reference::number;
-use crate::cases::{Rig, gas};
+use crate::cases::{Result, Rig, gas};
 
 /// CFL numbers of the injected piston: each halves the step.
 const PISTON_CFL: [f64; 7] = [0.64, 0.32, 0.16, 0.08, 0.04, 0.02, 0.01];
@@ -22,7 +22,7 @@ const FIXED_STEPS: [f64; 5] = [8e-4, 4e-4, 2e-4, 1e-4, 5e-5];
 
 /// A plate driven by a constant inflow into vacuum, by film and by the model piston. Its start is exact to 12 digits,
 /// so errors end near 1e-12.
-pub(super) fn injected_piston(rig: &Rig) -> Result<SceneRuns, String> {
+pub(super) fn injected_piston(rig: &Rig) -> Result<SceneRuns> {
     let [end, start] = ["end", "start"].map(|key| number(&format!("injected_piston/{key}")));
     let exact = gas::injected_exact(end);
     let simulated = end - start;

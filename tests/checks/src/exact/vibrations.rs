@@ -7,7 +7,7 @@ use billow_study::input::value::Value;
 
 use super::meter::{Configuration, Meter, add, quantity, scene, timed};
 use crate::cases::reference::rows;
-use crate::cases::{Rig, drum, sphere_motion};
+use crate::cases::{Result, Rig, drum, sphere_motion};
 
 /// Levels of the icosphere: each has four times the elements of the one before.
 const SPHERE_LEVELS: [u32; 5] = [1, 2, 3, 4, 5];
@@ -69,7 +69,7 @@ fn vibrations(all: &[u32], scene: usize) -> Vec<Vibration> {
 }
 
 /// A sphere on adiabatic gas about its equilibrium.
-pub(super) fn breathing_sphere(rig: &Rig) -> Result<SceneRuns, String> {
+pub(super) fn breathing_sphere(rig: &Rig) -> Result<SceneRuns> {
     let rows = rows("breathing_sphere");
     let name = |row: &Vec<f64>| {
         let name = format!("frequency_{}_Pa", row[0]);
@@ -95,7 +95,7 @@ pub(super) fn breathing_sphere(rig: &Rig) -> Result<SceneRuns, String> {
 }
 
 /// A drum: a disc under tension from its rim.
-pub(super) fn stretched_disc(rig: &Rig) -> Result<SceneRuns, String> {
+pub(super) fn stretched_disc(rig: &Rig) -> Result<SceneRuns> {
     let modes = drum::drum_modes();
     let name = |mode: &drum::DrumMode| {
         let name = format!("frequency_{}_{}", mode.diameters, mode.circles);

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Method;
 use super::scenes::{Prepared, StabilityScene, Values};
-use crate::cases::Rig;
+use crate::cases::{Result, Rig};
 use billow_study::job::Status;
 use billow_study::platform::stop::Stop;
 
@@ -95,13 +95,13 @@ pub(super) fn run(rig: &Rig, question: &Question, stop: &Stop) -> Option<Cell> {
     match catch_unwind(AssertUnwindSafe(|| answer(rig, question, stop))) {
         Ok(Ok(cell)) => cell,
         Ok(Err(problem)) => {
-            Some(Cell { place: problem, ..Cell::ended(Status::Invalid, "scene_check") })
+            Some(Cell { place: problem.to_string(), ..Cell::ended(Status::Invalid, "scene_check") })
         }
         Err(_) => Some(Cell::ended(Status::Panicked, "panic")),
     }
 }
 
-fn answer(rig: &Rig, question: &Question, stop: &Stop) -> Result<Option<Cell>, String> {
+fn answer(rig: &Rig, question: &Question, stop: &Stop) -> Result<Option<Cell>> {
     let mut listener = Listener(stop);
     match question.scene.prepare(rig, question.method, &question.values)? {
         Prepared::Film(mut film, timeline, omega) => {
@@ -114,8 +114,7 @@ fn answer(rig: &Rig, question: &Question, stop: &Stop) -> Result<Option<Cell>, S
             Ok(cell.map(|cell| Cell { theory, ..cell }))
         }
         Prepared::Model(scene) => {
-            let deployment = models::solve(rig.instruction_set, &scene, &mut listener)
-                .map_err(|error| error.to_string())?;
+            let deployment = models::solve(rig.instruction_set, &scene, &mut listener)?;
             Ok(judged(&deployment, None, scene.solver.end_time))
         }
         Prepared::Statics(film, positions) => {

@@ -70,12 +70,12 @@ fn scene(values: &Values) -> Scene {
     scene
 }
 
-fn build(rig: &Rig, method: Method, values: &Values) -> Result<Prepared, String> {
+fn build(rig: &Rig, method: Method, values: &Values) -> Result<Prepared> {
     let mut scene = scene(values);
     let step = values.get("step");
     let kind = match method {
         Method::Film(kind) => kind,
-        Method::Statics => return Err("no statics".to_owned()),
+        Method::Statics => return Err("no statics".into()),
         Method::Piston | Method::Storeys => {
             let fixed = values.get("fixed_step");
             (scene.solver.model, scene.solver.stepping) = match method {
@@ -91,13 +91,11 @@ fn build(rig: &Rig, method: Method, values: &Values) -> Result<Prepared, String>
     // The step of the values is set later: a scene has a CFL number of its range.
     let (height, cfl) = (scene.design.stowed_height, step.min(1.0));
     scene.solver.stepping = Stepping::Stable(cfl);
-    let text = |error: billow_solver::scene::error::SceneError| error.to_string();
     let stowed = Shape::Stowed(height);
-    let (film, mesh) =
-        capsule::film_scene(rig.instruction_set, &scene, stowed, cfl).map_err(text)?;
+    let (film, mesh) = capsule::film_scene(rig.instruction_set, &scene, stowed, cfl)?;
     let monitor = MonitorSettings::EVERY_STEP;
     let contact = FilmContact { monitor, ..FilmContact::of(&scene.contact) };
-    let contact = capsule::resolved_contact(contact, &scene.design).map_err(text)?;
+    let contact = capsule::resolved_contact(contact, &scene.design)?;
     let film = FilmScene { contact: Some(contact), ..film };
     let (run, timeline) = prepared(rig, film, kind, values, &[], Some(Rings::of(&mesh, height)))?;
     Ok(Prepared::Film(Box::new(run), timeline, None))

@@ -119,7 +119,7 @@ pub(super) const FILMS: StabilityScene = StabilityScene {
     build: Build::Film(colliding_sheets),
 };
 
-fn free_sheet(rig: &Rig, kind: IntegratorKind, values: &Values) -> Result<Prepared, String> {
+fn free_sheet(rig: &Rig, kind: IntegratorKind, values: &Values) -> Result<Prepared> {
     let film = values.film();
     let flat = sheet(4, 3, SIZE[0], SIZE[1] * values.get("sliver"));
     let soft = values.get("soft");
@@ -129,9 +129,7 @@ fn free_sheet(rig: &Rig, kind: IntegratorKind, values: &Values) -> Result<Prepar
     };
     let factors: Vec<f64> =
         flat.triangles.iter().map(|triangle| if left(triangle) { soft } else { 1.0 }).collect();
-    let model = FilmModel::of_shell(&film, &flat)
-        .map_err(|error| error.to_string())?
-        .with_stiffness(&factors);
+    let model = FilmModel::of_shell(&film, &flat)?.with_stiffness(&factors);
     let (compression, slack) = (film.compression, values.get("slack"));
     let linear = compression.to_bits() == 1.0_f64.to_bits() && slack.to_bits() == 0;
     let omega = linear.then(|| fastest_mode(&flat, &film, &model));
@@ -151,7 +149,7 @@ pub(super) fn flattened_bag(values: &Values) -> Shell {
     moved(icosphere(values.count("level"), RADIUS), flattened)
 }
 
-fn filled_bag(rig: &Rig, kind: IntegratorKind, values: &Values) -> Result<Prepared, String> {
+fn filled_bag(rig: &Rig, kind: IntegratorKind, values: &Values) -> Result<Prepared> {
     let shell = flattened_bag(values);
     let volume = shell.volume(|node| shell.positions[node as usize]);
     let nitrogen = nitrogen_supply();
@@ -175,7 +173,7 @@ fn filled_bag(rig: &Rig, kind: IntegratorKind, values: &Values) -> Result<Prepar
     Ok(Prepared::Film(Box::new(run), timeline, None))
 }
 
-fn colliding_sheets(rig: &Rig, kind: IntegratorKind, values: &Values) -> Result<Prepared, String> {
+fn colliding_sheets(rig: &Rig, kind: IntegratorKind, values: &Values) -> Result<Prepared> {
     let low = sheet(4, 3, 0.2, 0.15);
     let (nodes, elements) = (low.positions.len(), low.triangles.len());
     let rise = Vector3::z() * (values.get("gap") * DISTANCE);
@@ -196,7 +194,7 @@ fn colliding_sheets(rig: &Rig, kind: IntegratorKind, values: &Values) -> Result<
 }
 
 /// The step that a film of a scene takes at the CFL number 1, s.
-fn stable_step(rig: &Rig, scene: &FilmScene) -> Result<f64, String> {
+fn stable_step(rig: &Rig, scene: &FilmScene) -> Result<f64> {
     let mut free = scene.clone();
     free.contact = None;
     free.solver.integrator = IntegratorKind::default();
@@ -214,7 +212,7 @@ pub(super) fn prepared(
     values: &Values,
     factors: &[f64],
     rings: Option<Rings>,
-) -> Result<(FilmRun, Timeline), String> {
+) -> Result<(FilmRun, Timeline)> {
     let step = values.get("step");
     let end = scene.solver.end_time;
     scene.outputs.sample_interval = end / SAMPLES;
@@ -222,7 +220,7 @@ pub(super) fn prepared(
     let step_limit = step_limit(MAX_STEPS * (end / shortest + SAMPLES));
     scene.solver.integrator = kind;
     scene.solver.cfl = step.min(1.0);
-    let film = capsule::start(&rig.on_instruction_set(&scene), &[]).map_err(|e| e.to_string())?;
+    let film = capsule::start(&rig.on_instruction_set(&scene), &[])?;
     let (mut system, state, settings) = film.into_parts();
     if factors.iter().any(|factor| *factor < 1.0) {
         system.model = system.model.with_stiffness(factors);

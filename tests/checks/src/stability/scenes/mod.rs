@@ -141,11 +141,11 @@ pub(super) enum Prepared {
 /// Which methods can run a scene, and what prepares it for them.
 enum Build {
     /// Every integrator of film.
-    Film(fn(&Rig, IntegratorKind, &Values) -> Result<Prepared, String>),
+    Film(fn(&Rig, IntegratorKind, &Values) -> Result<Prepared>),
     /// Every integrator of film, and the models without film.
-    FilmAndModels(fn(&Rig, Method, &Values) -> Result<Prepared, String>),
+    FilmAndModels(fn(&Rig, Method, &Values) -> Result<Prepared>),
     /// The search for a static equilibrium.
-    Statics(fn(&Rig, &Values) -> Result<Prepared, String>),
+    Statics(fn(&Rig, &Values) -> Result<Prepared>),
 }
 
 /// A scene of the map.
@@ -174,17 +174,12 @@ impl StabilityScene {
     }
 
     /// The scene with a method and values.
-    pub(super) fn prepare(
-        &self,
-        rig: &Rig,
-        method: Method,
-        values: &Values,
-    ) -> Result<Prepared, String> {
+    pub(super) fn prepare(&self, rig: &Rig, method: Method, values: &Values) -> Result<Prepared> {
         match (&self.build, method) {
             (Build::Film(build), Method::Film(kind)) => build(rig, kind, values),
             (Build::FilmAndModels(build), _) => build(rig, method, values),
             (Build::Statics(build), Method::Statics) => build(rig, values),
-            _ => Err(format!("{} cannot run the scene {}", method.name(), self.name)),
+            _ => Err(format!("{} cannot run the scene {}", method.name(), self.name).into()),
         }
     }
 }

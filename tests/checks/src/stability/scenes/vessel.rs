@@ -43,19 +43,19 @@ pub(super) const CAPSULE: StabilityScene = StabilityScene {
     build: Build::Statics(capsule),
 };
 
-fn bag(_: &Rig, values: &Values) -> Result<Prepared, String> {
+fn bag(_: &Rig, values: &Values) -> Result<Prepared> {
     let shell = flattened_bag(values);
-    let model = FilmModel::of_shell(&values.film(), &shell).map_err(|error| error.to_string())?;
+    let model = FilmModel::of_shell(&values.film(), &shell)?;
     let load = PressureLoad::Overpressure(values.get("overpressure"));
     let positions = Field::of(&shell.positions);
     Ok(Prepared::Statics(Box::new(FilmSystem::free(model, load)), positions))
 }
 
-fn capsule(rig: &Rig, values: &Values) -> Result<Prepared, String> {
+fn capsule(rig: &Rig, values: &Values) -> Result<Prepared> {
     let mut scene = paper::empty_capsule(values.count("subdivisions"), 1.0);
     scene.film.thickness = values.get("thickness");
     scene.film.youngs_modulus = values.get("modulus");
-    let capsule = erected(rig.instruction_set, &scene).map_err(|error| error.to_string())?;
+    let capsule = erected(rig.instruction_set, &scene)?;
     let load = PressureLoad::Overpressure(values.get("overpressure"));
     let film = FilmSystem { supports: capsule.supports, ..FilmSystem::free(capsule.model, load) };
     Ok(Prepared::Statics(Box::new(film), capsule.positions))
