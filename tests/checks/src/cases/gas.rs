@@ -13,12 +13,14 @@
 
 use billow_solver::integrators::dormand_prince::{Control, DEFAULT_TOLERANCE};
 use billow_solver::mechanics::gas::Gas;
+use billow_solver::models::film::Rings;
 use billow_solver::models::piston::{EndFilm, Piston, PistonRun, PistonState, VolumeLaw};
 use billow_solver::models::run::Model;
+use billow_solver::output::history::Sample;
 use billow_solver::scene::Species;
 
 use super::prelude::*;
-use super::rig::{inflow, stopped, temperature};
+use super::rig::{inflow, stopped};
 use super::row::self_convergence_order;
 use super::shapes::gas_column;
 
@@ -30,55 +32,29 @@ const AREA: f64 = 0.5;
 /// Temperature of the film, K.
 const FILM_TEMPERATURE: f64 = 293.0;
 
-/// A vessel or a plate on gas, and how it moves.
-enum Body {
-    Film(Box<FilmSimulation>),
-    /// The model piston; packed: a rigid vessel.
-    Piston(Box<PistonRun>, bool),
+/// A vessel or a plate on gas.
+struct Body {
+    model: Box<dyn Model>,
+    /// Start of the names of its quantities.
+    prefix: &'static str,
+    /// Whether it is a packed piston: a rigid vessel.
+    packed: bool,
 }
 
 impl Body {
-    /// Start of the names of its quantities.
-    fn prefix(&self) -> &'static str {
-        match self {
-            Self::Film(_) => "",
-            Self::Piston(..) => "model piston: ",
-        }
+    fn film(film: FilmRun) -> Self {
+        Self { model: Box::new(film), prefix: "", packed: false }
     }
 
-    fn advance(&mut self, target: f64, phase: &Phase) -> Result<()> {
-        match self {
-            Self::Film(film) => advance(film, target, phase),
-            Self::Piston(run, packed) => {
-                let phase = Phase { packed: *packed, ..phase.clone() };
-                run.advance(target, &phase).map_err(|failure| stopped(&failure).into())
-            }
-        }
+    fn piston(piston: PistonRun, packed: bool) -> Self {
+        Self { model: Box::new(piston), prefix: "model piston: ", packed }
     }
 
-    /// Temperature (K), pressure (Pa), and heat from the film (J).
-    fn gas(&self) -> [f64; 3] {
-        match self {
-            Self::Film(film) => {
-                let film = film.view();
-                [temperature(&film), film.state.pressure, film.accounting().gas_balance.heat]
-            }
-            Self::Piston(run, packed) => {
-                let now = run.sample(&Phase { packed: *packed, ..Phase::default() });
-                [now.temperature, now.pressure, now.gas.heat]
-            }
-        }
-    }
-
-    /// Height (m) and speed (m/s) of the plate.
-    fn motion(&self) -> [f64; 2] {
-        match self {
-            Self::Film(film) => {
-                let state = film.view().state;
-                [state.positions.z[4], state.velocities.z[4]]
-            }
-            Self::Piston(run, _) => [run.state().height, run.state().speed],
-        }
+    /// Advances it to a time, s.
+    fn advance(&mut self, target: f64, phase: &Phase) -> Result<Sample> {
+        let phase = Phase { packed: self.packed, ..phase.clone() };
+        self.model.advance(target, &phase).map_err(|failure| stopped(&failure))?;
+        Ok(self.model.sample(&phase))
     }
 }
 
@@ -111,9 +87,9 @@ fn vessels(
     let supply = GasSupply { initial_mass: mass, ..supply };
     let filling = Filling::Gas { supply, initial_temperature: temperature };
     let supports = vec![held([LOWER, UPPER].concat(), "xyz")];
-    let film =
-        rig.start(&FilmScene { filling, supports, ..free_film(shell, Film::PAPER_ELASTIC) })?;
-    Ok([Body::Film(Box::new(film)), Body::Piston(Box::new(run), true)])
+    let scene = FilmScene { filling, supports, ..free_film(shell, Film::PAPER_ELASTIC) };
+    let film = FilmRun::with(rig.start(&scene)?, &scene, None);
+    Ok([Body::film(film), Body::piston(run, true)])
 }
 
 /// Filling of a vessel that contains gas, and of an empty one.
@@ -127,20 +103,18 @@ pub fn tank_filling(rig: &Rig) -> Outcome {
     let mut judged = Vec::new();
     for mut tank in vessels(rig, height, nitrogen_supply(), [initial, start])? {
         for row in rows("tank_filling") {
-            tank.advance((row[0] - initial) / rate, &phase)?;
-            let quantity = format!("{}T at {} kg, K", tank.prefix(), row[0]);
-            judged.push(Row::new(&quantity, tank.gas()[0], row[1], band));
-        }
-        if let Body::Film(film) = &tank {
-            let defect = (film.view().state.gas.mass / 0.01 - 1.0).abs();
-            judged.push(Row::at_most("mass defect", defect, 1e-12));
+            let now = tank.advance((row[0] - initial) / rate, &phase)?;
+            let quantity = format!("{}T at {} kg, K", tank.prefix, row[0]);
+            judged.push(Row::new(&quantity, now.temperature, row[1], band));
+            let quantity = format!("{}mass defect at {} kg", tank.prefix, row[0]);
+            judged.push(Row::at_most(&quantity, (now.gas.mass / row[0] - 1.0).abs(), 1e-12));
         }
     }
     let [mut empty, _] = vessels(rig, height, nitrogen_supply(), [0.0, start])?;
     for until in [1e-3, 1.0] {
-        empty.advance(until, &phase)?;
+        let now = empty.advance(until, &phase)?;
         let quantity = format!("T {until} s after the start from vacuum, K");
-        judged.push(Row::new(&quantity, empty.gas()[0], nitrogen().gamma() * entering, band));
+        judged.push(Row::new(&quantity, now.temperature, nitrogen().gamma() * entering, band));
     }
     Ok(judged)
 }
@@ -155,16 +129,16 @@ pub fn blow_down(rig: &Rig) -> Outcome {
     let tau = AREA * height / (supply.discharge_coefficient * supply.leak_area * sound * choked);
     let mut judged = Vec::new();
     for mut tank in vessels(rig, height, supply, [mass, start])? {
-        let [_, first, _] = tank.gas();
+        let first = tank.advance(0.0, &Phase::default())?;
         for share in [0.1, 0.5, 1.0, 3.0] {
-            tank.advance(share * tau, &Phase::default())?;
-            let [temperature, pressure, _] = tank.gas();
+            let now = tank.advance(share * tau, &Phase::default())?;
             let root = 1.0 + 0.5 * (gamma - 1.0) * share;
             let cooled = 1.0 / (root * root);
             let expanded = libm::pow(cooled, gamma / (gamma - 1.0));
-            let name = |quantity| format!("{}{quantity} at {share} tau", tank.prefix());
-            judged.push(Row::new(&name("T/T0"), temperature / start, cooled, band));
-            judged.push(Row::new(&name("p/p0"), pressure / first, expanded, band));
+            let name = |quantity| format!("{}{quantity} at {share} tau", tank.prefix);
+            judged.push(Row::new(&name("T/T0"), now.temperature / start, cooled, band));
+            let pressures = now.pressure / first.pressure;
+            judged.push(Row::new(&name("p/p0"), pressures, expanded, band));
         }
     }
     Ok(judged)
@@ -180,16 +154,19 @@ pub fn cooling(rig: &Rig) -> Outcome {
     let band = number("cooling/band");
     let mut judged = Vec::new();
     for mut tank in vessels(rig, 1.0, supply, [mass, start])? {
+        let mut heat = 0.0;
         for elapsed in [0.3, 1.0, 4.0] {
-            tank.advance(elapsed / rate, &Phase::default())?;
-            let share = (tank.gas()[0] - FILM_TEMPERATURE) / (start - FILM_TEMPERATURE);
+            let now = tank.advance(elapsed / rate, &Phase::default())?;
+            let share = (now.temperature - FILM_TEMPERATURE) / (start - FILM_TEMPERATURE);
+            let prefix = tank.prefix;
             let quantity =
-                format!("{}(T - T_film)/(T0 - T_film) at {elapsed} time constants", tank.prefix());
+                format!("{prefix}(T - T_film)/(T0 - T_film) at {elapsed} time constants");
             judged.push(Row::new(&quantity, share, libm::exp(-elapsed), band));
+            heat = now.gas.heat;
         }
-        let heat = capacity * (start - FILM_TEMPERATURE) * (libm::exp(-4.0) - 1.0);
-        let quantity = format!("{}heat from the film, J", tank.prefix());
-        judged.push(Row::new(&quantity, tank.gas()[2], heat, band));
+        let expected = capacity * (start - FILM_TEMPERATURE) * (libm::exp(-4.0) - 1.0);
+        let quantity = format!("{}heat from the film, J", tank.prefix);
+        judged.push(Row::new(&quantity, heat, expected, band));
     }
     Ok(judged)
 }
@@ -207,7 +184,7 @@ struct Plate {
 
 impl Plate {
     /// As film, with an integrator at a CFL number.
-    fn film(&self, rig: &Rig, integrator: IntegratorKind, cfl: f64) -> Result<Body> {
+    fn film(&self, rig: &Rig, integrator: IntegratorKind, cfl: f64) -> Result<FilmRun> {
         let shell = gas_column(self.area, self.height);
         // The mass of the plate includes its film.
         let of_film = 0.5 * shell.reference_area() * Film::PAPER_ELASTIC.area_density();
@@ -224,11 +201,13 @@ impl Plate {
         let filling = Filling::Gas { supply, initial_temperature: self.temperature };
         let mut scene = FilmScene { supports, filling, ..free_film(shell, Film::PAPER_ELASTIC) };
         (scene.solver.cfl, scene.solver.integrator) = (cfl, integrator);
-        Ok(Body::Film(Box::new(rig.start(&scene)?)))
+        let (top_ring, storeys) = (UPPER.to_vec(), Vec::new());
+        let rings = Rings { top_ring, top_centre: UPPER[0], storeys, stowed_height: 0.0 };
+        Ok(FilmRun::with(rig.start(&scene)?, &scene, Some(rings)))
     }
 
     /// As the model piston, from a time (s).
-    fn piston(&self, from: f64, stepping: Stepping) -> Body {
+    fn piston(&self, from: f64, stepping: Stepping) -> PistonRun {
         let gas = Gas::new(&self.supply, FILM_TEMPERATURE, 1.0);
         let piston = Piston { weight: self.force, ..tube(self.area, 0.0, self.mass, gas) };
         let state = PistonState {
@@ -236,7 +215,7 @@ impl Plate {
             speed: self.speed,
             gas: gas.at_temperature(self.supply.initial_mass, self.temperature),
         };
-        Body::Piston(Box::new(PistonRun::new(piston, from, state, control(stepping))), false)
+        PistonRun::new(piston, from, state, control(stepping))
     }
 }
 
@@ -272,24 +251,18 @@ fn injected_start() -> Plate {
 /// its height, m.
 pub fn injected(rig: &Rig, integrator: IntegratorKind, cfl: f64) -> Result<(FilmSimulation, f64)> {
     let [start, end] = entry("injected_piston", ["start", "end"]);
-    let mut body = injected_start().film(rig, integrator, cfl)?;
-    body.advance(end - start, &injection())?;
-    let [height, _] = body.motion();
-    match body {
-        Body::Film(film) => Ok((*film, height)),
-        Body::Piston(..) => unreachable!("a plate of film"),
-    }
+    let mut run = injected_start().film(rig, integrator, cfl)?;
+    advance(&mut run.film, end - start, &injection())?;
+    let height = run.view().state.positions.z[UPPER[0] as usize];
+    Ok((run.film, height))
 }
 
 /// The same by the model piston: its steps, and its height, m.
 pub fn injected_model(stepping: Stepping) -> Result<(u64, f64)> {
-    let mut body = injected_start().piston(number("injected_piston/start"), stepping);
-    body.advance(number("injected_piston/end"), &injection())?;
-    let [height, _] = body.motion();
-    match body {
-        Body::Piston(run, _) => Ok((run.steps(), height)),
-        Body::Film(_) => unreachable!("the model piston"),
-    }
+    let mut run = injected_start().piston(number("injected_piston/start"), stepping);
+    let ended = run.advance(number("injected_piston/end"), &injection());
+    ended.map_err(|failure| stopped(&failure))?;
+    Ok((run.steps(), run.state().height))
 }
 
 /// The injected piston: film with the step halved twice, the model with adaptive and fixed steps.
@@ -361,13 +334,13 @@ pub fn injected_piston_dead_volume(rig: &Rig) -> Outcome {
         supply: nitrogen_supply(),
         temperature: FILM_TEMPERATURE,
     };
-    let run = |mut body: Body| -> Result<f64> {
-        body.advance(end, &injection())?;
-        Ok(body.motion()[0] - height)
+    let run = |mut body: Body| Ok(body.advance(end, &injection())?.z_rim - height);
+    let film = |cfl: f64| -> Result<f64> {
+        run(Body::film(plate.film(rig, IntegratorKind::Explicit, cfl)?))
     };
-    let film = |cfl: f64| run(plate.film(rig, IntegratorKind::Explicit, cfl)?);
     let values = [film(0.04)?, film(0.02)?, film(0.01)?];
-    let model = run(plate.piston(0.0, Stepping::Adaptive(DEFAULT_TOLERANCE)))?;
+    let piston = plate.piston(0.0, Stepping::Adaptive(DEFAULT_TOLERANCE));
+    let model = run(Body::piston(piston, false))?;
     let expected = from_dead_volume(area, volume);
     Ok(vec![
         Row::new("x at 50 ms, m", values[2], expected, band)
@@ -399,12 +372,12 @@ pub fn gas_spring(rig: &Rig) -> Outcome {
         // After one period the plate is at rest: the remaining speed over the acceleration is the error of the period.
         let force = pressure * area * (libm::pow(1.0 + amplitude, -gamma) - 1.0);
         let period = |mut body: Body| -> Result<f64> {
-            body.advance(ratio * linear, &Phase::default())?;
-            Ok(ratio - body.motion()[1] / (force / mass) / linear)
+            let speed = body.advance(ratio * linear, &Phase::default())?.vz;
+            Ok(ratio - speed / (force / mass) / linear)
         };
-        let film = |cfl: f64| period(plate.film(rig, IntegratorKind::Explicit, cfl)?);
+        let film = |cfl: f64| period(Body::film(plate.film(rig, IntegratorKind::Explicit, cfl)?));
         let values = [film(0.8)?, film(0.4)?, film(0.2)?];
-        let model = period(plate.piston(0.0, Stepping::Adaptive(1e-10)))?;
+        let model = period(Body::piston(plate.piston(0.0, Stepping::Adaptive(1e-10)), false))?;
         let quantity = format!("period over linear period at amplitude {amplitude}");
         judged.push(
             Row::new(&quantity, values[2], ratio, band).with_order(self_convergence_order(values)),

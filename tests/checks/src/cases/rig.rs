@@ -8,7 +8,6 @@ use billow_solver::platform::fault_injection::Fault;
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::inflow::Inflow;
 use billow_solver::statics::{self, StaticSolution};
-use billow_solver::system::PressureLoad;
 use std::ops::ControlFlow;
 
 use super::prelude::*;
@@ -81,14 +80,6 @@ pub fn explicit(film: &FilmSimulation) -> StoredExplicit {
     match film.stored().map(|stored| stored.integrator) {
         Some(StoredIntegrator::Explicit(explicit)) => *explicit,
         _ => unreachable!("reference cases use central differences, which can be stored"),
-    }
-}
-
-/// Temperature of the gas, K; NaN under a fixed pressure.
-pub fn temperature(film: &FilmView<'_>) -> f64 {
-    match film.system.pressure_load {
-        PressureLoad::Gas(gas) => gas.temperature(film.state.gas),
-        PressureLoad::Overpressure(_) => f64::NAN,
     }
 }
 
