@@ -14,7 +14,7 @@ use billow_solver::output::outcome::{Deployment, FailureKind, Stop};
 use billow_solver::scene::DEFAULT_CFL;
 use billow_solver::scene::monitor_settings::MonitorSettings;
 
-use super::contact_rig::unrecovered_contact_energy;
+use super::contact_rig::{ContactRecord, unrecovered_contact_energy};
 use super::prelude::*;
 use super::rig::stopped;
 
@@ -38,36 +38,31 @@ fn deploy(rig: &Rig, scene: &Scene, contact: FilmContact) -> Result<(FilmRun, De
     }
 }
 
-/// Rows of every run of a capsule: its passages and intersections.
-fn counts(run: &FilmRun, deployment: &Deployment, name: &str) -> Vec<Row> {
-    let count = |counted: Option<u64>| counted.map_or(f64::NAN, |counted| counted as f64);
-    let (accounting, audit) = (run.view().accounting(), &deployment.audit);
-    let note = format!(
-        "{} elements, {} steps to {:.4} s, {} broad-phase rebuilds, {} collision impulses",
-        deployment.elements,
-        deployment.steps,
-        run.view().state.time,
-        accounting.broad_phase_rebuilds,
-        accounting.collision_impulses
-    );
-    let passages = Row::at_most(&format!("{name}passages"), count(audit.passages), 0.0);
-    let intersections = count(audit.intersections);
-    let intersections = Row::at_most(&format!("{name}intersections"), intersections, 0.0);
-    vec![passages.with_note(&note), intersections]
+/// What is judged of every run of a capsule.
+fn record(run: &FilmRun, deployment: &Deployment) -> ContactRecord {
+    let (now, audit) = (run.view(), &deployment.audit);
+    let peak = deployment.history.column("kinetic_energy").iter().copied().fold(0.0, worse);
+    let accounting = now.accounting();
+    ContactRecord {
+        passages: audit.passages,
+        intersections: audit.intersections,
+        residual: audit.ledger_residual,
+        unrecovered: unrecovered_contact_energy(&now) / peak,
+        note: format!(
+            "{} elements, {} steps to {:.4} s, {} broad-phase rebuilds, {} collision impulses",
+            deployment.elements,
+            deployment.steps,
+            now.state.time,
+            accounting.broad_phase_rebuilds,
+            accounting.collision_impulses
+        ),
+    }
 }
 
-/// The same, and rows of its energy.
-fn common_rows(run: &FilmRun, deployment: &Deployment, name: &str, ledger_band: f64) -> Vec<Row> {
-    let residual = deployment.audit.ledger_residual;
-    let peak = deployment.history.column("kinetic_energy").iter().copied().fold(0.0, worse);
-    let unrecovered = unrecovered_contact_energy(&run.film.view()) / peak;
-    let band = number("contact/not_returned_band");
-    let mut rows = counts(run, deployment, name);
-    rows.extend([
-        Row::at_most(&format!("{name}film energy residual"), residual, ledger_band),
-        Row::at_most(&format!("{name}unrecovered contact energy"), unrecovered, band),
-    ]);
-    rows
+/// Its rows, with those of its energy.
+fn all_rows(record: &ContactRecord, name: &str, ledger_band: &str) -> Vec<Row> {
+    let rows = record.rows(name, number(&format!("contact/{ledger_band}")));
+    [rows, vec![record.unrecovered(name)]].concat()
 }
 
 /// The first tenth of a second with every step monitored, as tension field and with full membrane stiffness, with every
@@ -93,11 +88,10 @@ pub(super) fn every_step(rig: &Rig, subdivisions: u32) -> Outcome {
             let steps = (deployment.steps as f64).max(1.0);
             let monitored = run.film.view().tested_steps().map_or(f64::NAN, |steps| steps as f64);
             judged.push(Row::at_least(&format!("{name}monitored steps"), monitored, steps));
+            let record = record(&run, &deployment);
             judged.extend(match kind {
-                IntegratorKind::Explicit => {
-                    common_rows(&run, &deployment, &name, number(&format!("contact/{key}")))
-                }
-                _ => counts(&run, &deployment, &name),
+                IntegratorKind::Explicit => all_rows(&record, &name, key),
+                _ => record.counts(&name),
             });
         }
     }
@@ -135,7 +129,7 @@ pub(super) fn deployed(rig: &Rig, subdivisions: u32) -> Outcome {
     judged.push(between("peak kinetic energy, J", energy, "peak_kinetic_energy"));
     let least = number("capsule_deployed/volume");
     judged.push(Row::at_least("V at the end, m3", run.volume(), least));
-    judged.extend(common_rows(&run, &deployment, "", number("contact/ledger_band")));
+    judged.extend(all_rows(&record(&run, &deployment), "", "ledger_band"));
     Ok(judged)
 }
 
@@ -152,7 +146,7 @@ pub(super) fn contact_distance(rig: &Rig) -> Outcome {
         let name = format!("distance {:.3} mm: ", 1e3 * factor * distance);
         let band = number("contact_distance/band");
         judged.push(Row::new(&format!("{name}V at the end, m3"), run.volume(), expected, band));
-        judged.extend(common_rows(&run, &deployment, &name, number("contact/ledger_band")));
+        judged.extend(all_rows(&record(&run, &deployment), &name, "ledger_band"));
     }
     Ok(judged)
 }

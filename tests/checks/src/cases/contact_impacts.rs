@@ -66,8 +66,8 @@ pub fn films_at_50_m_s(rig: &Rig) -> Outcome {
             (momentum(&film.view()) - before).norm() / scale,
             number("contact/momentum_band"),
         ));
-        judged.push(record.unrecovered(&film.view(), run));
-        judged.extend(record.rows(&film.view(), run, number("contact/ledger_band")));
+        judged.push(record.unrecovered(run));
+        judged.extend(record.rows(run, number("contact/ledger_band")));
     }
     Ok(judged)
 }
@@ -109,12 +109,12 @@ pub fn squeezed_bag(rig: &Rig, compressions: &[f64]) -> Outcome {
         let record = run_recorded(&mut film, closed, 60, &Phase::default())?;
         let run = format!("c {compression}: ");
         if compression > 0.0 {
-            judged.extend(record.counts(&film.view(), &run));
+            judged.extend(record.counts(&run));
             continue;
         }
         let squeezed = height(&film.view()) / whole;
         judged.push(Row::at_most(&format!("{run}height over initial height"), squeezed, share));
-        judged.extend(record.rows(&film.view(), &run, number("contact/ledger_band")));
+        judged.extend(record.rows(&run, number("contact/ledger_band")));
     }
     Ok(judged)
 }

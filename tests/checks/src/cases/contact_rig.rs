@@ -6,7 +6,7 @@
 //! ```
 
 use billow_solver::collision::monitor::intersections::intersections;
-use billow_solver::output::ledger::{Ledger, residuals};
+use billow_solver::output::ledger::residuals;
 use billow_solver::scene::monitor_settings::MonitorSettings;
 use billow_solver::scene::plate::Plate;
 
@@ -39,33 +39,70 @@ pub fn plate(
     Plate { name, point, normal, motion: motion.map(motion_of), removal_time: f64::INFINITY }
 }
 
-/// What was recorded of a run.
-pub struct RunRecord {
-    /// Most intersections at a sample.
-    intersections: usize,
-    /// Most pairs with contact force at a sample.
-    pairs: usize,
-    /// Energy ledger at every sample.
-    ledgers: Vec<Ledger>,
+/// What is judged of every run with contact.
+pub struct ContactRecord {
+    pub passages: Option<u64>,
+    pub intersections: Option<u64>,
+    /// Largest residual of the energy ledger.
+    pub residual: f64,
+    /// Unrecovered contact energy over the largest kinetic energy.
+    pub unrecovered: f64,
+    pub note: String,
 }
 
-/// Advances film to `end` (s) and records it at this number of samples.
+impl ContactRecord {
+    /// Rows of passages and intersections.
+    pub fn counts(&self, run: &str) -> Vec<Row> {
+        let row = |name: &str, counted: Option<u64>| {
+            let counted = counted.map_or(f64::NAN, |counted| counted as f64);
+            Row::at_most(&format!("{run}{name}"), counted, 0.0)
+        };
+        let passages = row("passages", self.passages).with_note(&self.note);
+        vec![passages, row("intersections", self.intersections)]
+    }
+
+    /// Rows of passages, intersections and ledger residual.
+    pub fn rows(&self, run: &str, ledger_band: f64) -> Vec<Row> {
+        let name = format!("{run}film energy residual");
+        [self.counts(run), vec![Row::at_most(&name, self.residual, ledger_band)]].concat()
+    }
+
+    /// Row of the unrecovered contact energy.
+    pub fn unrecovered(&self, run: &str) -> Row {
+        let band = number("contact/not_returned_band");
+        Row::at_most(&format!("{run}unrecovered contact energy"), self.unrecovered, band)
+    }
+}
+
+/// Advances film to `end` (s), and counts intersections at this number of samples.
 pub fn run_recorded(
     film: &mut FilmSimulation,
     end: f64,
     samples: u32,
     phase: &Phase,
-) -> Result<RunRecord> {
-    let mut record = RunRecord { intersections: 0, pairs: 0, ledgers: vec![film.view().ledger()] };
+) -> Result<ContactRecord> {
+    let (mut found, mut pairs, mut ledgers) = (0, 0, vec![film.view().ledger()]);
     for sample in 1..=samples {
         advance(film, end * f64::from(sample) / f64::from(samples), phase)?;
-        record.intersections = record.intersections.max(intersection_count(&film.view()));
+        found = found.max(intersection_count(&film.view()));
         let contacts = &film.view().state.contact.contacts;
-        let pairs = contacts.iter().filter(|contact| contact.energy > 0.0).count();
-        record.pairs = record.pairs.max(pairs);
-        record.ledgers.push(film.view().ledger());
+        pairs = pairs.max(contacts.iter().filter(|contact| contact.energy > 0.0).count());
+        ledgers.push(film.view().ledger());
     }
-    Ok(record)
+    let peak = ledgers.iter().map(|ledger| ledger.kinetic).fold(0.0, worse);
+    let residual = residuals(&ledgers).into_iter().fold(0.0, worse);
+    let now = film.view();
+    Ok(ContactRecord {
+        passages: now.passages(),
+        intersections: Some(found as u64),
+        residual,
+        unrecovered: unrecovered_contact_energy(&now) / peak,
+        note: format!(
+            "{} steps monitored, at most {pairs} pairs in contact, {} collision impulses; ledger residual {residual:.1e}",
+            now.steps(),
+            now.accounting().collision_impulses
+        ),
+    })
 }
 
 /// Number of intersections of the whole film in its present state.
@@ -80,52 +117,4 @@ pub fn unrecovered_contact_energy(film: &FilmView<'_>) -> f64 {
     let pairs: f64 = contact_state.contacts.iter().map(|contact| contact.energy).sum();
     let plates: f64 = contact_state.plates.iter().map(|plate| plate.energy).sum();
     (film.ledger().contact - pairs - plates + film.accounting().collision_dissipation).abs()
-}
-
-impl RunRecord {
-    /// Largest kinetic energy, J.
-    pub fn peak_kinetic(&self) -> f64 {
-        self.ledgers.iter().map(|ledger| ledger.kinetic).fold(0.0, worse)
-    }
-
-    /// Rows of passages and intersections.
-    pub fn counts(&self, film: &FilmView<'_>, run: &str) -> Vec<Row> {
-        let passages = film.passages().map_or(f64::NAN, |passages| passages as f64);
-        vec![
-            Row::at_most(&format!("{run}passages"), passages, 0.0).with_note(&format!(
-                "{} steps monitored, at most {} pairs in contact, {} collision impulses; ledger residual {:.1e}",
-                film.steps(),
-                self.pairs,
-                film.accounting().collision_impulses,
-                self.residual()
-            )),
-            Row::at_most(&format!("{run}intersections"), self.intersections as f64, 0.0),
-        ]
-    }
-
-    /// Largest ledger residual.
-    fn residual(&self) -> f64 {
-        residuals(&self.ledgers).into_iter().fold(0.0, worse)
-    }
-
-    /// Rows of passages, intersections and ledger residual.
-    pub fn rows(&self, film: &FilmView<'_>, run: &str, ledger_band: f64) -> Vec<Row> {
-        let mut rows = self.counts(film, run);
-        rows.push(Row::at_most(
-            &format!("{run}film energy residual"),
-            self.residual(),
-            ledger_band,
-        ));
-        rows
-    }
-
-    /// Row of the unrecovered contact energy over the largest kinetic energy.
-    pub fn unrecovered(&self, film: &FilmView<'_>, run: &str) -> Row {
-        let share = unrecovered_contact_energy(film) / self.peak_kinetic();
-        Row::at_most(
-            &format!("{run}unrecovered contact energy"),
-            share,
-            number("contact/not_returned_band"),
-        )
-    }
 }

@@ -92,11 +92,10 @@ pub fn stack_of_sheets(rig: &Rig) -> Outcome {
             let note = format!("largest at a node {largest:.0} Pa");
             judged.push(Row::new(&quantity, mean, pressure, band).with_note(&note));
         }
-        judged.extend(record.rows(
-            &film.view(),
-            &format!("distance {} mm, ", 1e3 * distance),
-            number("contact/ledger_band"),
-        ));
+        judged.extend(
+            record
+                .rows(&format!("distance {} mm, ", 1e3 * distance), number("contact/ledger_band")),
+        );
     }
     Ok(judged)
 }

@@ -89,7 +89,7 @@ pub fn tube_between_plates(rig: &Rig) -> Outcome {
         );
         let share = film.view().state.volume / start;
         judged.push(Row::new(&format!("{run}A/A0"), share, area, area_band));
-        judged.extend(record.rows(&film.view(), &run, number("contact/ledger_band")));
+        judged.extend(record.rows(&run, number("contact/ledger_band")));
     }
     Ok(judged)
 }

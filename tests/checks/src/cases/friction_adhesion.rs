@@ -49,7 +49,7 @@ pub fn friction(rig: &Rig) -> Outcome {
         Row::new("speed loss, m/s", lost, mu * gravity * time, band),
         Row::at_least("energy dissipated by friction, J", dissipated, 0.0),
     ];
-    judged.extend(record.rows(&film.view(), "", number("contact/ledger_band")));
+    judged.extend(record.rows("", number("contact/ledger_band")));
     Ok(judged)
 }
 

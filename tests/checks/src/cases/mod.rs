@@ -19,7 +19,7 @@ use rayon::prelude::{
 
 pub mod command;
 pub mod prelude;
-pub mod reference;
+pub(crate) mod reference;
 pub mod rig;
 mod row;
 mod table;
@@ -27,7 +27,7 @@ mod table;
 pub mod contact_capsule;
 mod contact_impacts;
 mod contact_relaxed;
-pub mod contact_rig;
+mod contact_rig;
 mod contact_stack;
 mod contact_tube;
 mod damping;
