@@ -4,7 +4,8 @@ use std::fs;
 
 use serde_json::json;
 
-use crate::support::{TestFolder, grid};
+use crate::search::searching;
+use crate::support::{TestFolder, file_of, grid, ids, json_of};
 
 /// N × ratio × flow × end time with the piston: infeasible points, and runs that end before deployment.
 fn study() -> serde_json::Value {
@@ -81,33 +82,32 @@ fn every_kind_is_drawn_as_svg_and_png() {
     }
 }
 
+/// The default set of a study with limits, replicates and a search, drawn twice.
 #[test]
 fn the_default_set_is_drawn_with_reproducible_bytes() {
-    let mut study = study();
-    study["grid"].as_object_mut().unwrap().remove("solver.end_time");
+    let mut study = searching();
+    study["grid"]["N"] = json!([6]);
+    study["grid"]["residual_gas_mass"] = json!([0, "0.05 g"]);
+    study["replicates"] = json!({ "film.thickness": ["24 um", "25 um", "26 um", "27 um"] });
     let folder = TestFolder::finished(&study);
     let read = || -> Vec<(String, Vec<u8>)> {
-        let printed = folder.stdout(&["chart", "grid.json", "--json"]);
-        let rows: serde_json::Value = serde_json::from_str(&printed).unwrap();
-        let files = rows.as_array().unwrap().iter();
-        let names = files.map(|row| row["file"].as_str().unwrap().to_owned());
-        names.map(|name| (name.clone(), fs::read(folder.path().join(name)).unwrap())).collect()
+        let printed = json_of(&folder, &["chart", "grid.json", "-q"]);
+        let names = printed.as_array().unwrap().iter().map(|row| row["file"].as_str().unwrap());
+        names.map(|name| (name.to_owned(), fs::read(folder.path().join(name)).unwrap())).collect()
     };
     let drawn = read();
-    let names: Vec<&str> = drawn.iter().map(|(name, _)| name.as_str()).collect();
-    for stem in [
-        "history-z_rim",
-        "history-vz",
-        "history-pressure",
-        "t_90_z_rim-over-mass_flow_rate",
-        "peak_vz-over-mass_flow_rate",
+    for (name, expected) in [
+        ("borders", "Largest mass flow rate with peak_vz < 40 m/s over residual gas mass"),
+        ("smallest_margin-over-mass_flow_rate", "limit"),
+        ("peak_vz-over-mass_flow_rate", "limit 40 m/s"),
+        ("history-z_rim", "median, and range from least to largest"),
     ] {
-        for ending in ["svg", "png"] {
-            let path = format!("results/grid/charts/{stem}.{ending}");
-            assert!(names.contains(&path.as_str()), "{path}: {names:?}");
-        }
+        let path = format!("results/grid/charts/{name}.svg");
+        let (_, svg) = drawn.iter().find(|(name, _)| *name == path).expect(&path);
+        let shown = texts(svg);
+        assert!(shown.iter().any(|text| text.contains(expected)), "{name}: {shown:?}");
+        assert!(drawn.iter().any(|(name, _)| *name == path.replace(".svg", ".png")), "{name}");
     }
-    assert!(names.iter().any(|name| name.contains("-map-mass_flow_rate-")), "{names:?}");
     assert!(drawn == read());
     // Charts in a results folder do not prevent another run.
     folder.stdout(&["run", "grid.json", "-q"]);
@@ -116,14 +116,9 @@ fn the_default_set_is_drawn_with_reproducible_bytes() {
 #[test]
 fn jobs_are_selected_by_id_prefix_and_formats_by_file_extension() {
     let folder = TestFolder::finished(&study());
-    let rows = folder.rows("results/grid");
-    let done: Vec<&str> = rows
-        .iter()
-        .filter(|row| row["status"] == "done")
-        .map(|row| &row["job"].as_str().unwrap()[..10])
-        .collect();
-    let ids = done[..2].join(",");
-    let arguments = ["chart", "--history", "vz", "--jobs", &ids, "--out"];
+    let done = ids(&folder, "done");
+    let two = format!("{},{}", &done[0][..10], &done[1][..10]);
+    let arguments = ["chart", "--history", "vz", "--jobs", &two, "--out"];
     let printed = folder.stdout(&[&arguments[..], &["two.SVG"]].concat());
     assert_eq!(printed, "two.SVG\n");
     let shown = texts(&fs::read(folder.path().join("two.SVG")).unwrap());
@@ -134,99 +129,10 @@ fn jobs_are_selected_by_id_prefix_and_formats_by_file_extension() {
 }
 
 #[test]
-fn invalid_charts_give_exit_code_2_and_no_file() {
-    let folder = TestFolder::finished(&study());
-    for (arguments, expected) in [
-        (&["--history", "z_rims"][..], "did you mean z_rim?"),
-        (&["--measure", "peak_v", "--over", "N"], "did you mean peak_vz?"),
-        (&["--measure", "status", "--over", "N"], "not a column of numbers"),
-        (&["--measure", "peak_vz"], "needs a parameter to be drawn over"),
-        (&["--measure", "peak_vz", "--over", "panels"], "not a parameter"),
-        (&["--measure", "peak_vz", "--map", "N"], "not two parameters"),
-        (&["--measure", "peak_vz", "--over", "N", "--by", "flow"], "--by = flow"),
-        (&["--history", "vz", "--jobs", "zz"], "no job id starts with this"),
-        (&["--history", "vz", "--jobs", ","], "job ids start with this"),
-        (&["--history", "vz", "--from", "5 g"], "--from = 5 g"),
-        (&["--history", "vz", "--from", "0.3", "--to", "0.2"], "the time range is empty"),
-        (&["--history", "vz", "--where", "N == 7"], "no row fulfils this condition"),
-        (&["--history", "vz", "--where", "n_ == 7"], "^"),
-        (&["--history", "vz", "--out", "vz.pdf"], ".svg or .png"),
-        (&["--history", "vz", "--out", "nowhere/vz.png"], "nowhere/vz.png"),
-        (&["--out", "vz.png"], "one file for several charts"),
-        (&["--title", "Mine"], "one title for several charts"),
-        (&["nowhere"], "nowhere"),
-    ] {
-        folder.refuses(&[&["chart"], arguments].concat(), expected);
-    }
-    assert!(!folder.results().join("charts").exists());
-}
-
-#[test]
 fn a_lost_history_is_reported_and_nothing_is_drawn() {
     let folder = TestFolder::finished(&study());
-    let row = folder.rows("results/grid").into_iter().find(|row| row["status"] == "done").unwrap();
-    let job = row["job"].as_str().unwrap();
-    fs::remove_file(folder.results().join(format!("jobs/{}/{job}.h5", &job[..2]))).unwrap();
-    folder.refuses(&["chart", "--history", "vz"], job);
+    let job = ids(&folder, "done").remove(0);
+    fs::remove_file(file_of(&folder, &job)).unwrap();
+    folder.refuses(&["chart", "--history", "vz"], &job);
     assert!(!folder.results().join("charts").exists());
-}
-
-/// Strategies over residual masses with four thicknesses of each point, limits, and a search of the largest
-/// inflow.
-fn question() -> serde_json::Value {
-    let mut study = grid(&json!({
-        "strategy": ["direct", "late"],
-        "residual_gas_mass": [0, "0.05 g"],
-        "mass_flow_rate": {
-            "bisect": ["0.5 g/s", "20 g/s"], "on": "peak_vz", "tolerance": "20 %", "spacing": "log"
-        }
-    }));
-    study["design"]["N"] = json!(6);
-    study["design"]["M"] = json!(3);
-    study["design"]["alpha1_over_phi"] = json!(1);
-    study["strategies"] = json!({
-        "direct": {}, "late": { "inflow": [{ "from": "0.1 s", "to": "0.5 s" }] }
-    });
-    study["limits"] = json!({ "peak_vz": "< 27 m/s", "verdict": "deployed" });
-    study["replicates"] = json!({ "film.thickness": ["25 um", "26 um", "27 um", "28 um"] });
-    study
-}
-
-#[test]
-fn the_default_set_of_a_question_shows_borders_limits_and_medians() {
-    let folder = TestFolder::finished(&question());
-    let printed = folder.stdout(&["chart", "grid.json", "-q"]);
-    let charts = "results/grid/charts";
-    let read = |name: &str| {
-        let path = format!("{charts}/{name}.svg");
-        assert!(printed.lines().any(|line| line == path), "{path}: {printed}");
-        texts(&fs::read(folder.path().join(path)).unwrap())
-    };
-    for (name, expected) in [
-        (
-            "borders",
-            &[
-                "Largest mass flow rate with peak_vz < 27 m/s over residual gas mass",
-                "Mass flow rate (g/s)",
-                "Inflation strategy",
-                "late",
-                "ends of the search",
-            ][..],
-        ),
-        ("smallest_margin-over-mass_flow_rate", &["limit", "0.05 g"]),
-        ("peak_vz-over-mass_flow_rate", &["limit 27 m/s", "inflation strategy", "direct"]),
-        ("history-z_rim", &["median, and range from least to largest"]),
-    ] {
-        let shown = read(name);
-        for text in expected {
-            let there = |shown: &String| shown.contains(text);
-            assert!(shown.iter().any(there), "{name}: {text}: {shown:?}");
-        }
-        assert!(!shown.iter().any(|text| text.contains("Thickness")), "{name}: {shown:?}");
-    }
-    let arguments = ["chart", "grid.json", "-q", "--measure", "safe", "--out", "map.svg"];
-    let chosen = ["--map", "residual_gas_mass,strategy", "--where", "mass_flow_rate == '0.5 g/s'"];
-    folder.stdout(&[&arguments[..], &chosen].concat());
-    let map = texts(&fs::read(folder.path().join("map.svg")).unwrap());
-    assert!(map.iter().any(|text| text == "4/4"), "{map:?}");
 }

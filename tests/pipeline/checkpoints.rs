@@ -28,11 +28,6 @@ fn rows(folder: &TestFolder) -> Vec<Value> {
     without_costs(folder.rows("results/grid"))
 }
 
-fn undisturbed() -> TestFolder {
-    let folder = TestFolder::finished(&study());
-    folder
-}
-
 /// The same rows and histories.
 fn assert_same_bits(folder: &TestFolder, whole: &TestFolder) {
     assert_eq!(rows(folder), rows(whole));
@@ -51,6 +46,14 @@ fn wait_until(child: &mut Child, what: &str, reached: impl Fn() -> bool) {
     }
 }
 
+/// A run until its second job has computed for a while.
+fn running(folder: &TestFolder) -> Child {
+    let mut child = folder.billow(&["run", "grid.json", "-q"]).spawn().unwrap();
+    wait_until(&mut child, "its second job", || attempts(folder) == 3);
+    sleep(Duration::from_millis(150));
+    child
+}
+
 /// Number of lines of the attempts of a running process; one is its header.
 fn attempts(folder: &TestFolder) -> usize {
     let text = fs::read_to_string(folder.results().join("attempts.jsonl")).unwrap_or_default();
@@ -59,15 +62,13 @@ fn attempts(folder: &TestFolder) -> usize {
 
 #[test]
 fn a_signal_stores_the_running_job_which_then_continues_with_the_same_bits() {
-    let whole = undisturbed();
+    let whole = TestFolder::finished(&study());
     // Under nohup a hangup stops nothing.
     let signals = [("-USR1", 138), ("-HUP", 129)];
     for (name, code) in signals.into_iter().filter(|(name, _)| *name != "-HUP" || !hangup_ignored())
     {
         let folder = TestFolder::new(&study());
-        let mut child = folder.billow(&["run", "grid.json", "-q"]).spawn().unwrap();
-        wait_until(&mut child, "its second job", || attempts(&folder) == 3);
-        sleep(Duration::from_millis(150));
+        let child = running(&folder);
         let start = Instant::now();
         signal(&child, name);
         let output = child.wait_with_output().unwrap();
@@ -93,11 +94,9 @@ fn hangup_ignored() -> bool {
 
 #[test]
 fn a_damaged_checkpoint_costs_time_only() {
-    let whole = undisturbed();
+    let whole = TestFolder::finished(&study());
     let folder = TestFolder::new(&study());
-    let mut child = folder.billow(&["run", "grid.json", "-q"]).spawn().unwrap();
-    wait_until(&mut child, "its second job", || attempts(&folder) == 3);
-    sleep(Duration::from_millis(150));
+    let mut child = running(&folder);
     signal(&child, "-TERM");
     assert_eq!(child.wait().unwrap().code(), Some(143));
     let path = files(&folder, "checkpoints").remove(0);
@@ -112,7 +111,7 @@ fn a_damaged_checkpoint_costs_time_only() {
 
 #[test]
 fn a_job_that_is_killed_twice_is_quarantined_and_runs_again_on_request() {
-    let whole = undisturbed();
+    let whole = TestFolder::finished(&study());
     let folder = TestFolder::new(&study());
     for _ in 0..2 {
         let mut child = folder.billow(&["run", "grid.json", "-q"]).spawn().unwrap();
@@ -142,7 +141,7 @@ fn a_job_that_is_killed_twice_is_quarantined_and_runs_again_on_request() {
 
 #[test]
 fn a_limited_job_is_a_row_and_goes_on_with_a_higher_limit() {
-    let whole = undisturbed();
+    let whole = TestFolder::finished(&study());
     let mut limited = study();
     limited["job_limits"] = json!({"steps": 2000});
     let folder = TestFolder::new(&limited);

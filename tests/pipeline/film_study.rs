@@ -1,9 +1,5 @@
 //! Studies with the film model: sound rows, shared static states, the same bits on any threads.
 
-use std::fs;
-use std::thread::sleep;
-use std::time::Instant;
-
 use serde_json::{Value, json};
 
 use crate::support::{TestFolder, histories, stderr, without_costs};
@@ -99,7 +95,7 @@ fn a_film_study_gives_sound_rows_and_the_same_bits_on_any_threads() {
 }
 
 #[test]
-fn models_mix_in_a_grid_and_only_the_piston_has_a_fixed_step() {
+fn models_mix_in_a_grid() {
     let mut mixed = study();
     mixed["solver"] = json!({"end_time": "2 ms"});
     mixed["grid"] = json!({"model": ["piston", "storeys", "film"]});
@@ -117,53 +113,4 @@ fn models_mix_in_a_grid_and_only_the_piston_has_a_fixed_step() {
         assert!(row["passages"].is_null() && row["smallest_gap"].is_null());
     }
     assert_eq!(rows[2]["passages"], 0);
-
-    let refused = folder.run(&["plan", "grid.json", "--set", "solver.stepping.fixed=1e-6"]);
-    assert_eq!(refused.status.code(), Some(2));
-    let text = stderr(&refused);
-    assert!(text.contains("solver.stepping.fixed") && text.contains("solver.cfl"), "{text}");
-}
-
-/// The shipped study, killed ten times; longer than the quick tier.
-#[test]
-#[ignore = "long: a study of film twice over"]
-fn first_json_killed_ten_times_has_the_table_of_an_undisturbed_run() {
-    let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/../studies/first.json");
-    let first: Value = serde_json::from_str(&fs::read_to_string(shipped).unwrap()).unwrap();
-    let whole = TestFolder::new(&first);
-    let start = Instant::now();
-    whole.stdout(&["run", "grid.json", "-q"]);
-    let undisturbed = start.elapsed();
-    let folder = TestFolder::new(&first);
-    let mut killed = 0;
-    // Fractions of the undisturbed wall time: within the first jobs, at their ends, within static states.
-    // The first five together are shorter than the study.
-    for round in 0..10 {
-        let mut child = folder.billow(&["run", "grid.json", "-q"]).spawn().unwrap();
-        sleep(undisturbed.mul_f64(0.037 + 0.049 * f64::from(round)));
-        killed += u32::from(child.try_wait().unwrap().is_none());
-        let _ = child.kill();
-        child.wait().unwrap();
-    }
-    assert!(killed >= 5, "only {killed} of ten runs were killed before their end");
-    let output = folder.run(&["run", "grid.json", "-q"]);
-    if !output.status.success() {
-        // A job that was killed twice counts as one that kills its process: its next step is to run it on request.
-        let text = stderr(&output);
-        assert!(text.contains("crashed)") && text.contains("--status crashed"), "{text}");
-        folder.stdout(&["run", "results/grid", "--again", "crashed", "-q"]);
-    }
-    assert_eq!(
-        without_costs(folder.rows("results/grid")),
-        without_costs(whole.rows("results/grid"))
-    );
-    assert_eq!(histories(&folder.results()), histories(&whole.results()));
-    for row in folder.rows("results/grid") {
-        assert_eq!(
-            (&row["status"], &row["verdict"]),
-            (&json!("done"), &json!("deployed")),
-            "{row}"
-        );
-        assert!(row["passages"] == 0 && row["ledger_residual"].as_f64().unwrap() <= 5e-3, "{row}");
-    }
 }

@@ -14,12 +14,22 @@ mod export;
 mod film_study;
 mod fold;
 mod frames;
+#[path = "../torture/harness"]
+#[expect(dead_code, reason = "the other numbers are for `make torture`")]
+mod harness {
+    pub mod random;
+}
 mod instruction_sets;
 mod interruption;
 mod keys;
 mod mangled_studies;
 mod memory;
 mod monitor_and_blind_contact;
+#[path = "../torture/kinds/mutations"]
+mod mutations {
+    pub mod bytes;
+    pub mod json;
+}
 mod plan;
 mod rank_and_borders;
 mod refused;

@@ -1,15 +1,12 @@
 //! From study text to jobs: ids, grids, filters, overrides, generations.
 #![expect(clippy::float_cmp, reason = "planning moves numbers, it computes none: they are equal")]
 
-use std::time::Instant;
-
 use billow_study::input::value::Value;
 use billow_study::job::{JobId, Status};
 use billow_study::platform::error::InputError;
 use billow_study::study::finished::FinishedRow;
 use billow_study::study::plan::{Generation, PlanCounts, next_jobs};
 use billow_study::study::{MAX_POINTS, Study};
-use proptest::prelude::*;
 use serde_json::{Value as Json, json};
 
 fn try_study(json: &Json, sets: &[&str]) -> Result<Study, InputError> {
@@ -95,6 +92,10 @@ fn equal_values_give_the_same_job_id() {
         study.pointer_mut(parent).unwrap()[leaf] = value.clone();
         assert_eq!(id(&study), expected, "{pointer} = {value}");
     }
+    let reversed = r#"{"solver": {"end_time": 0.5, "model": "piston"}, "gas": {"mass_flow_rate": 0.005},
+        "design": {"height": 1, "top_radius": 0.365, "bottom_radius": 0.5, "M": 3, "N": 6}}"#;
+    let study = Study::from_text(reversed, "f", "x", &[], MAX_POINTS).unwrap();
+    assert_eq!(next_jobs(&study, &[]).unwrap().points[0].job.id, expected);
     // Other values give another id.
     for (pointer, value) in [
         ("/design/N", json!(5)),
@@ -109,59 +110,6 @@ fn equal_values_give_the_same_job_id() {
         let (parent, leaf) = pointer.rsplit_once('/').unwrap();
         study.pointer_mut(parent).unwrap()[leaf] = value.clone();
         assert_ne!(id(&study), expected, "{pointer} = {value}");
-    }
-}
-
-/// The same study with the keys of every object in reverse order. It is text, because a map of
-/// `serde_json` sorts its keys.
-fn reversed(json: &Json) -> String {
-    match json {
-        Json::Object(members) => {
-            let parts: Vec<String> =
-                members.iter().rev().map(|(k, v)| format!("{k:?}: {}", reversed(v))).collect();
-            format!("{{{}}}", parts.join(", "))
-        }
-        Json::Array(items) => {
-            format!("[{}]", items.iter().map(reversed).collect::<Vec<_>>().join(", "))
-        }
-        other => other.to_string(),
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
-
-    #[test]
-    fn job_ids_do_not_depend_on_spelling(
-        panels in 5_u32..9,
-        storeys in 3_u32..6,
-        millimetres in 20_u32..60,
-        micrograms in 0_u32..100_000,
-        tenths in 1_u32..100,
-    ) {
-        let mut study = capsule();
-        study["design"]["N"] = panels.into();
-        study["design"]["M"] = storeys.into();
-        study["design"]["stowed_height"] = (f64::from(millimetres) / 1000.0).into();
-        study["gas"]["residual_gas_mass"] = format!("{micrograms}e-9").parse::<f64>().unwrap().into();
-        study["gas"]["mass_flow_rate"] = format!("{tenths}e-4").parse::<f64>().unwrap().into();
-        let expected = id(&study);
-
-        let mut rewritten = study.clone();
-        rewritten["design"]["N"] = f64::from(panels).into();
-        rewritten["design"]["M"] = f64::from(storeys).into();
-        rewritten["design"]["stowed_height"] = format!("{millimetres} mm").into();
-        rewritten["gas"]["residual_gas_mass"] = format!("{micrograms} ug").into();
-        rewritten["gas"]["mass_flow_rate"] = format!("0.{tenths:04} kg/s").into();
-        prop_assert_eq!(&id(&rewritten), &expected);
-
-        let text = reversed(&rewritten);
-        let other = Study::from_text(&text, "f", "x", &[], MAX_POINTS).unwrap();
-        prop_assert_eq!(&next_jobs(&other, &[]).unwrap().points[0].job.id, &expected);
-
-        // With every default written out.
-        let resolved = serde_json::to_value(other.resolved()).unwrap();
-        prop_assert_eq!(&id(&resolved), &expected);
     }
 }
 
@@ -294,17 +242,6 @@ fn overrides_come_before_expansion() {
     assert_eq!(column(&plan(&study, &["grid.N=7"]), "N"), integers(&[7]));
     let generation = plan(&study, &["M=[2, 4]", "N=7"]);
     assert_eq!(column(&generation, "M"), integers(&[2, 4]));
-    let zipped = with_grid(json!({"zip": [{"N": [5, 6], "M": [3, 4]}]}));
-    let error = try_study(&zipped, &["N=7"]).unwrap_err().to_string();
-    assert!(error.contains("varies by grid.zip"), "{error}");
-}
-
-#[test]
-fn duplicates_are_merged_with_a_note() {
-    let generation = plan(&with_grid(json!({"N": [6, 6.0, 5], "points": [{"N": 6}]})), &[]);
-    assert_eq!(column(&generation, "N"), integers(&[6, 5]));
-    assert_eq!(generation.points[0].merged.len(), 2);
-    assert_eq!(generation.points[0].merged[0], vec![("N".to_owned(), Value::Integer(6))]);
 }
 
 #[test]
@@ -320,16 +257,6 @@ fn a_filter_keeps_single_points_and_every_point_is_counted() {
     let counts = PlanCounts::of(&study, &generation);
     assert_eq!((counts.points, counts.duplicates, counts.filtered), (3, 1, 3));
     assert_eq!(counts.jobs + counts.infeasible, 2);
-
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("study.json"), json.to_string()).unwrap();
-    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_billow"));
-    command.args(["plan", "study.json", "--summary", "--json"]).current_dir(folder.path());
-    let output = command.output().unwrap();
-    let printed: Json = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!((&printed["points"], &printed["filtered"]), (&json!(3), &json!(3)));
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.contains(": 3 points: ") && said.contains("1 duplicate, "), "{said}");
 }
 
 #[test]
@@ -357,40 +284,19 @@ fn a_generation_depends_only_on_the_finished_rows() {
 }
 
 #[test]
-fn ten_thousand_jobs_are_planned() {
-    // A hundred designs, and ten thousand: the second plan solves a fold for every job.
-    for grid in [
-        json!({
-            "N": {"from": 4, "to": 13, "step": 1},
-            "M": {"from": 1, "to": 10, "step": 1},
-            "mass_flow_rate": {"from": "1 g/s", "to": "10 g/s", "steps": 10},
-            "residual_gas_mass": {"from": 0, "to": "0.1 g", "steps": 10},
-            "filter": "N >= 4 and mass_flow_rate > '0.1 g/s'",
-        }),
-        json!({
+fn ten_thousand_designs_are_planned() {
+    let generation = plan(
+        &with_grid(json!({
             "N": {"from": 4, "to": 13, "step": 1},
             "M": {"from": 1, "to": 10, "step": 1},
             "top_radius": {"from": "100 mm", "to": "495 mm", "steps": 10},
             "height": {"from": 0.5, "to": 2, "steps": 10},
-        }),
-    ] {
-        let start = Instant::now();
-        let generation = plan(&with_grid(grid), &[]);
-        println!("10,000 points planned in {:?}", start.elapsed());
-        assert_eq!(generation.points.len(), 10_000);
-        let mut ids: Vec<_> = generation.points.iter().map(|point| &point.job.id).collect();
-        ids.sort();
-        ids.dedup();
-        assert_eq!(ids.len(), 10_000, "every id is unique");
-    }
-
-    // A grid that is too large is refused before it is expanded.
-    let many: Vec<i64> = (0..1000).collect();
-    let huge = with_grid(json!({"seed": many, "step_limit": (1..1000).collect::<Vec<i64>>()}));
-    let error = try_study(&huge, &[]).unwrap_err();
-    assert!(error.problem.contains("999000 points"), "{error}");
-    assert!(error.allowed.contains("250000"), "{error}");
-    assert!(error.hint.contains("seed (1000 values) and step_limit (999 values)"), "{error}");
+        })),
+        &[],
+    );
+    let ids: std::collections::BTreeSet<_> =
+        generation.points.iter().map(|point| &point.job.id).collect();
+    assert_eq!((generation.points.len(), ids.len()), (10_000, 10_000), "every id is unique");
 }
 
 #[test]

@@ -5,16 +5,11 @@ use std::fs;
 use billow_study::store::history_file;
 use serde_json::json;
 
-use crate::support::{TestFolder, grid, small_grid, stderr};
-
-fn finished_study() -> TestFolder {
-    let folder = TestFolder::finished(&small_grid());
-    folder
-}
+use crate::support::{TestFolder, grid, ran, small_grid, stderr};
 
 #[test]
 fn histories_agree_with_the_table() {
-    let folder = finished_study();
+    let folder = ran();
     let mut seen = 0;
     for row in folder.rows("results/grid") {
         let Some(hash) = row["content_hash"].as_str() else { continue };
@@ -37,61 +32,25 @@ fn histories_agree_with_the_table() {
 
 #[test]
 fn a_lost_or_foreign_table_changes_no_answer_and_is_restored() {
-    let folder = finished_study();
+    let folder = ran();
     let path = folder.results().join("summary.parquet");
     let table = fs::read(&path).unwrap();
-    let rows = folder.run(&["table"]).stdout;
-    fs::write(&path, b"a foreign file").unwrap();
-    let output = folder.run(&["table"]);
-    assert_eq!(output.status.code(), Some(0));
-    assert_eq!(output.stdout, rows);
-    assert!(folder.run(&["doctor"]).stdout.windows(18).any(|text| text == b"not a Parquet file"));
-    for damage in [false, true] {
-        if damage {
-            fs::write(&path, &table[..table.len() / 2]).unwrap();
-        } else {
-            fs::remove_file(&path).unwrap();
+    let all = ["table", "--columns", "all", "--format", "csv", "-q"];
+    let rows = folder.stdout(&all);
+    for damage in [None, Some(&b"a foreign file"[..]), Some(&table[..table.len() / 2])] {
+        match damage {
+            Some(bytes) => fs::write(&path, bytes).unwrap(),
+            None => fs::remove_file(&path).unwrap(),
         }
+        assert_eq!(folder.stdout(&all), rows);
         folder.stdout(&["run", "grid.json", "-q"]);
         assert_eq!(fs::read(&path).unwrap(), table);
     }
 }
 
 #[test]
-fn foreign_lines_of_a_journal_are_named_with_file_and_line() {
-    let folder = finished_study();
-    let path = folder.results().join("journal/000001.jsonl");
-    let sound = fs::read_to_string(&path).unwrap();
-    for (text, expected) in [
-        (sound.replacen("billow-journal", "bellow-journal", 1), "line 1: it does not have"),
-        (format!("{sound}not ours\n"), "line 19: it has no checksum"),
-        (String::from("{}\n"), "line 1: it has no checksum"),
-    ] {
-        fs::write(&path, text).unwrap();
-        let output = folder.run(&["status"]);
-        assert_eq!(output.status.code(), Some(0));
-        let output = folder.run(&["table"]);
-        assert!(stderr(&output).contains(expected), "{}", stderr(&output));
-        assert!(stderr(&output).contains("000001.jsonl"), "{}", stderr(&output));
-        folder.stdout(&["run", "grid.json", "-q"]);
-        assert_eq!(folder.run(&["doctor"]).status.code(), Some(0), "{expected}");
-    }
-    assert!(folder.stdout(&["run", "grid.json"]).contains("nothing to run"));
-}
-
-#[test]
-fn a_results_path_that_is_a_file_is_an_error() {
-    let folder = TestFolder::new(&small_grid());
-    fs::write(folder.path().join("taken"), b"").unwrap();
-    let output = folder.run(&["run", "grid.json", "-q", "--results", "taken"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).starts_with("billow: taken: "), "{}", stderr(&output));
-    assert_eq!(fs::read(folder.path().join("taken")).unwrap(), b"");
-}
-
-#[test]
 fn a_folder_of_another_study_is_refused_and_a_larger_grid_continues() {
-    let folder = finished_study();
+    let folder = ran();
     let mut study = small_grid();
     study["name"] = serde_json::json!("other");
     fs::write(folder.path().join("other.json"), study.to_string()).unwrap();
@@ -108,7 +67,7 @@ fn a_folder_of_another_study_is_refused_and_a_larger_grid_continues() {
 
 #[test]
 fn a_run_with_another_set_says_what_changed_and_keeps_every_job() {
-    let folder = finished_study();
+    let folder = ran();
     let said = folder.run(&["run", "grid.json", "--set", "solver.end_time=0.3"]);
     let note = "last run for another form of this study (solver.end_time 0.6 → 0.3)";
     assert!(stderr(&said).contains(note), "{}", stderr(&said));

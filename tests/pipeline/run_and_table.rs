@@ -1,11 +1,10 @@
 //! `billow run`, `billow table` and `billow plan`: output, exit codes, files.
 
-use std::fs;
 use std::io::{BufRead, BufReader};
 
 use serde_json::json;
 
-use crate::support::{TestFolder, ran, small_grid, stderr};
+use crate::support::{TestFolder, small_grid, stderr};
 
 #[test]
 fn a_study_runs_and_reports_its_results() {
@@ -60,36 +59,29 @@ fn a_quiet_run_leaves_stderr_empty_and_prints_json() {
     assert_eq!(summary["status"], json!({ "done": 16, "infeasible": 8 }));
 }
 
-#[test]
-fn failed_jobs_give_exit_code_1_and_rows() {
-    let mut study = small_grid();
-    study["solver"]["step_limit"] = json!(3);
-    let folder = TestFolder::new(&study);
-    for _ in 0..2 {
-        let output = folder.run(&["run", "grid.json", "-q"]);
-        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
-        assert!(stderr(&output).contains("16 jobs failed\n  next: billow table results/grid"));
-    }
-    let rows = folder.rows("results/grid");
-    let failed: Vec<_> = rows.iter().filter(|row| row["status"] == "step_limit").collect();
-    assert_eq!(failed.len(), 16);
-    assert!(
-        failed.iter().all(|row| row["stop_time"].is_number() && row["content_hash"].is_string())
-    );
-    assert!(failed.iter().all(|row| row["verdict"].is_null()));
-}
-
 /// The command that a failed run names lists the failed jobs, with replicates too.
 #[test]
-fn the_next_step_of_a_failed_run_works_with_replicates() {
+fn failed_jobs_give_exit_code_1_rows_and_a_next_step_that_works() {
     let mut study = small_grid();
     study["solver"]["step_limit"] = json!(3);
     study["replicates"] = json!({"film.thickness": ["25 um", "26 um"]});
     let folder = TestFolder::new(&study);
+    for _ in 0..2 {
+        let output = folder.run(&["run", "grid.json", "-q"]);
+        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+        assert!(stderr(&output).contains("32 jobs failed\n  next: billow table results/grid"));
+    }
+    let rows = folder.rows("results/grid");
+    let failed: Vec<_> = rows.iter().filter(|row| row["status"] == "step_limit").collect();
+    assert_eq!(failed.len(), 32);
+    for row in failed {
+        assert!(row["stop_time"].is_number() && row["content_hash"].is_string(), "{row}");
+        assert!(row["verdict"].is_null(), "{row}");
+    }
     let said = stderr(&folder.run(&["run", "grid.json", "-q"]));
     let command = said.lines().find_map(|line| line.split_once("next: billow "));
-    let words: Vec<&str> = command.expect("a next step").1.split([' ', ';']).collect();
-    let words: Vec<&str> = words.into_iter().take_while(|word| !word.is_empty()).collect();
+    let words = command.expect("a next step").1.split([' ', ';']);
+    let words: Vec<&str> = words.take_while(|word| !word.is_empty()).collect();
     let table = folder.stdout(&words);
     let failed = table.lines().filter(|line| line.contains("step_limit")).count();
     assert_eq!(failed, 32, "{words:?} {table}");
@@ -159,29 +151,6 @@ fn a_folder_with_other_files_is_refused() {
         folder.run(&["run", "grid.json", "--results", "papers", "-q"]).status.code(),
         Some(0)
     );
-}
-
-#[test]
-fn a_table_of_another_study_than_the_file_says_so() {
-    let folder = TestFolder::finished(&small_grid());
-    let same = folder.run(&["table", "grid.json"]);
-    assert!(!stderr(&same).contains("is not the study"), "{}", stderr(&same));
-    let other = folder.run(&["table", "grid.json", "--set", "film.numerical_damping=0.05"]);
-    assert_eq!(other.status.code(), Some(0));
-    let said = stderr(&other);
-    assert!(said.contains("(film.numerical_damping 0.0001 → 0.05)"), "{said}");
-}
-
-#[test]
-fn table_reads_the_journal_if_no_table_exists() {
-    let folder = ran();
-    let all = ["table", "--columns", "all", "--format", "csv", "-q"];
-    let table = folder.stdout(&all);
-    fs::remove_file(folder.results().join("summary.parquet")).unwrap();
-    assert_eq!(folder.stdout(&all), table);
-    folder.stdout(&["run", "grid.json", "-q"]);
-    assert!(folder.results().join("summary.parquet").is_file());
-    assert_eq!(folder.stdout(&all), table);
 }
 
 #[test]

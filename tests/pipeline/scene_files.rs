@@ -1,60 +1,10 @@
 //! Scene files: meshes of other programs, and errors of invalid scenes, flags and files.
 
-use billow_study::input::keys::{
-    BODY_KEYS, MESH_KEYS, MOVE_KEYS, OUTPUT_KEYS, ROTATION_KEYS, SCENE, SCENE_WINDOW_KEYS,
-    SPIN_KEYS, START_KEYS, SUPPORT_KEYS,
-};
 use billow_study::input::schema::scene_schema;
 use serde_json::{Value, json};
 
 use crate::solve::{CUBE, capsule, cube, done, number, scene_folder, solve};
 use crate::support::stderr;
-
-#[test]
-fn the_schema_has_every_key() {
-    let schema = scene_schema();
-    let has = |location: &str, key: &str| {
-        let found = schema.pointer(&format!("{location}/properties/{key}"));
-        let found = found.unwrap_or_else(|| panic!("{key} of {location} is missing"));
-        assert!(found["description"].as_str().is_some_and(|text| text.len() > 5), "{key}");
-    };
-    for key in &SCENE.keys {
-        let (section, leaf) = key.path.rsplit_once('.').unwrap_or(("", key.path));
-        // A species is a name or an object.
-        if section == "gas.species" {
-            assert!(schema["properties"]["gas"].to_string().contains(&format!("{leaf:?}")));
-            continue;
-        }
-        let location = if section.is_empty() { "" } else { &format!("/properties/{section}") };
-        has(location, leaf);
-    }
-    let support = "/properties/supports/items";
-    for (location, keys) in [
-        ("/properties/mesh".to_owned(), MESH_KEYS),
-        ("/properties/gas/properties/windows/items".to_owned(), SCENE_WINDOW_KEYS),
-        (support.to_owned(), SUPPORT_KEYS),
-        (format!("{support}/properties/body"), BODY_KEYS),
-        (format!("{support}/properties/move"), MOVE_KEYS),
-        (format!("{support}/properties/move/properties/rotation"), ROTATION_KEYS),
-        ("/properties/start".to_owned(), START_KEYS),
-        ("/properties/start/properties/spin".to_owned(), SPIN_KEYS),
-        ("/properties/outputs".to_owned(), OUTPUT_KEYS),
-    ] {
-        for key in keys {
-            has(&location, key.path);
-        }
-    }
-    for (location, key) in [
-        ("/properties/mesh", "reference"),
-        ("/properties/mesh", "closure"),
-        (support, "nodes"),
-        ("/properties/outputs", "nodes"),
-        ("/properties/outputs", "elements"),
-        ("", "gravity"),
-    ] {
-        has(location, key);
-    }
-}
 
 #[test]
 fn meshes_of_other_programs_are_read() {

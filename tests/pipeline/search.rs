@@ -5,10 +5,10 @@ use billow_study::job::JobId;
 use billow_study::platform::files::Disk;
 use billow_study::store::results::Results;
 use billow_study::store::stored::Stored;
-use billow_study::study::{Border, MAX_POINTS, SearchResult, Study};
+use billow_study::study::{Border, SearchResult};
 use serde_json::{Value as Json, json};
 
-use crate::support::{TestFolder, grid, stderr};
+use crate::support::{TestFolder, grid};
 
 /// A piston study that searches the mass flow rate at which the speed reaches its limit.
 pub(crate) fn searching() -> Json {
@@ -23,7 +23,7 @@ pub(crate) fn searching() -> Json {
 }
 
 /// With five films in the place of seeds, which the piston ignores.
-fn replicated() -> Json {
+pub(crate) fn replicated() -> Json {
     let mut study = searching();
     let films = ["24 um", "25 um", "26 um", "27 um", "28 um"];
     study["replicates"] = json!({"film.thickness": films});
@@ -83,16 +83,8 @@ fn a_search_finds_the_border_of_a_limit_and_resumes() {
 fn an_interrupted_search_plans_the_same_jobs() {
     let whole = TestFolder::finished(&searching());
     let parts = TestFolder::new(&searching());
-    // First the scan alone, as the jobs of a plain grid.
-    let scan = Study::from_text(&searching().to_string(), "s.json", "s", &[], MAX_POINTS);
-    let rates: Vec<Json> = scan
-        .unwrap()
-        .resolved()
-        .get("grid")
-        .map(|_| [1.0, 20.0].map(|rate: f64| json!(rate * 1e-3)).to_vec())
-        .unwrap();
-    let rates = format!("grid.mass_flow_rate={}", Json::Array(rates));
-    parts.stdout(&["run", "grid.json", "-q", "--set", &rates]);
+    // First the ends of the search alone, as the jobs of a plain grid.
+    parts.stdout(&["run", "grid.json", "-q", "--set", "grid.mass_flow_rate=[0.001, 0.02]"]);
     let output = parts.stdout(&["run", "grid.json", "-q"]);
     assert!(!output.contains("nothing to run"), "{output}");
     assert_eq!(jobs(&parts), jobs(&whole));
@@ -120,59 +112,13 @@ fn replicates_repeat_every_point_and_decide_together() {
 }
 
 #[test]
-fn single_points_have_all_replicates() {
-    let mut study = grid(&json!({"points": [{"N": 6, "M": 3, "mass_flow_rate": "1 g/s"}]}));
-    study["design"]["alpha1_over_phi"] = json!(1);
-    study["replicates"] =
-        json!({"seed": 3, "film.thickness": {"from": "20 um", "to": "30 um", "steps": 2}});
-    let study = Study::from_text(&study.to_string(), "s.json", "s", &[], MAX_POINTS).unwrap();
-    assert_eq!(study.replicates(), ["thickness", "seed"], "keys in order");
-    assert_eq!(study.replicate_count(), 6);
-    let plan = billow_study::study::plan::next_jobs(&study, &[]).unwrap();
-    let points: usize = plan.points.iter().map(|point| 1 + point.merged.len()).sum();
-    assert_eq!((points, plan.points.len()), (6, 6));
-    // The resolved study is the same study.
-    let text = serde_json::to_string(&study.resolved()).unwrap();
-    let again = Study::from_text(&text, "s.json", "s", &[], MAX_POINTS).unwrap();
-    assert_eq!(billow_study::study::plan::next_jobs(&again, &[]), Some(plan));
-    assert_eq!(again.replicates(), study.replicates());
-}
-
-#[test]
-fn a_set_of_a_replicate_names_the_section() {
-    let folder = TestFolder::new(&replicated());
-    let output = folder.run(&["plan", "grid.json", "--set", "film.thickness=25 um"]);
-    let error = stderr(&output);
-    assert!(error.contains("--set 'replicates.thickness="), "{error}");
-    folder.stdout(&[
-        "plan",
-        "grid.json",
-        "--set",
-        "replicates.film.thickness=[\"25 um\"]",
-        "--summary",
-    ]);
-}
-
-#[test]
-fn a_member_of_a_search_is_overridden() {
-    let folder = TestFolder::new(&searching());
-    let plan = |set: &str| folder.run(&["plan", "grid.json", "--set", set]);
-    let ends = "grid.mass_flow_rate.bisect=[\"1 g/s\", \"2 g/s\"]";
-    let changed = folder.stdout(&["plan", "grid.json", "--set", ends]);
-    assert!(changed.lines().any(|line| line.contains(" 1.414 ")), "{changed}");
-    let wide = "grid.mass_flow_rate.tolerance=-1 %";
-    let error = stderr(&plan(wide));
-    assert!(error.contains(&format!("--set {wide}: grid.mass_flow_rate.tolerance")), "{error}");
-    let error = stderr(&plan("grid.mass_flow_rate.tolerant=1 %"));
-    assert!(error.contains("is not a key of a search; did you mean tolerance?"), "{error}");
-}
-
-#[test]
 fn a_search_runs_along_single_points_that_do_not_give_its_key() {
     let mut study = searching();
     study["grid"]["points"] = json!([
         {"N": 7, "heat_transfer": "adiabatic"},
         {"N": 7, "mass_flow_rate": "3 g/s"},
+        // A point of the product counts once.
+        {"N": 5},
     ]);
     study["grid"]["filter"] = json!("N < 7");
     let folder = TestFolder::finished(&study);
@@ -190,38 +136,16 @@ fn a_search_runs_along_single_points_that_do_not_give_its_key() {
 }
 
 #[test]
-fn a_job_that_two_points_share_counts_once() {
-    let plain = TestFolder::finished(&searching());
-    let expected = borders(&plain);
-    // A value that the bisection meets, and a single point that is one of the product.
-    let SearchResult::Border { low, .. } = expected[0].outcome else { panic!("{expected:?}") };
-    let mut study = searching();
-    study["grid"]["points"] = json!([{"N": 5, "mass_flow_rate": low}, {"N": 5}]);
-    let folder = TestFolder::finished(&study);
-    assert_eq!(borders(&folder), expected);
-    let mut ids = jobs(&folder);
-    ids.sort();
-    ids.dedup();
-    assert_eq!(
-        ids.len(),
-        jobs(&folder).len(),
-        "each job is one point with its other parameters merged"
-    );
-    assert_eq!(ids.len(), jobs(&plain).len());
-}
-
-#[test]
 fn a_filter_that_ends_a_search_is_reported() {
     let mut study = searching();
     study["grid"]["filter"] = json!("mass_flow_rate < '6 g/s' or mass_flow_rate > '6.5 g/s'");
     let folder = TestFolder::new(&study);
     let printed = folder.stdout(&["run", "grid.json", "-q"]);
-    for border in borders(&folder) {
+    let found = borders(&folder);
+    for border in &found {
         let SearchResult::Border { low, high, .. } = border.outcome else { panic!("{border:?}") };
         assert_eq!(border.filtered, high > 1.02 * low, "{low} to {high}");
     }
-    assert_eq!(
-        printed.contains("the filter of the study ends this search"),
-        borders(&folder).iter().any(|border| border.filtered)
-    );
+    let reported = printed.contains("the filter of the study ends this search");
+    assert_eq!(reported, found.iter().any(|border| border.filtered));
 }

@@ -25,25 +25,11 @@ fn parts_are_merged_into_the_table_of_the_whole() {
 }
 
 #[test]
-fn what_cannot_be_merged_or_run_in_parts_is_refused() {
+fn results_of_another_study_are_not_merged() {
     let folder = TestFolder::new(&small_grid());
     folder.stdout(&["run", "grid.json", "--results", "one", "-q"]);
     folder.stdout(&["run", "grid.json", "--set", "grid.N=[5]", "--results", "two", "-q"]);
-    let cases: [(&[&str], &str); 6] = [
-        (&["merge", "one", "two", "--results", "all"], "two: not results of the study"),
-        (&["merge", "one", "two"], "none into which they are joined"),
-        (&["merge", "nothing"], "no results here"),
-        (&["run", "grid.json", "--points", "4/3"], "--points = \"4/3\": is no part"),
-        (&["merge", "one"], "no results of tasks here"),
-        (&["submit", "grid.json", "--time", "soon"], "--time = \"soon\""),
-    ];
-    for (arguments, expected) in cases {
-        let output = folder.run(arguments);
-        let text = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {text}");
-        let found = text.contains(expected) || text.contains(&expected.replace('"', ""));
-        assert!(found && text.contains("\n  "), "{arguments:?}: {text}");
-    }
+    folder.refuses(&["merge", "one", "two", "--results", "all"], "two: not results of the study");
     assert!(!folder.path().join("all").exists());
 }
 

@@ -61,6 +61,11 @@ fn every_command_keeps_its_exit_code_when_a_stream_is_closed_or_full() {
         assert_eq!(run(Stdio::null(), closed()), Some(code), "{arguments:?}, stderr closed");
         assert_eq!(run(closed(), Stdio::null()), Some(code), "{arguments:?}, stdout closed");
         assert_eq!(run(closed(), closed()), Some(code), "{arguments:?}, both closed");
+        // Closed descriptors: what the program opens itself takes their numbers.
+        let mut shell = Command::new("sh");
+        shell.args(["-c", "exec \"$@\" <&- >&- 2>&-", "sh", env!("CARGO_BIN_EXE_billow")]);
+        shell.args(arguments).current_dir(folder.path());
+        assert_eq!(shell.status().unwrap().code(), Some(code), "{arguments:?}, none open");
         let incomplete = if prints { 2 } else { code };
         assert_eq!(run(full(), full()), Some(incomplete), "{arguments:?}, both full");
     }

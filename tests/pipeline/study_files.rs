@@ -112,11 +112,8 @@ fn the_schema_refuses_what_the_program_refuses() {
 #[test]
 fn schema_and_plan_print_json() {
     let billow = |arguments: &[&str]| {
-        let output = Command::new(env!("CARGO_BIN_EXE_billow"))
-            .args(arguments)
-            .current_dir(folder())
-            .output()
-            .unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_billow"));
+        let output = command.args(arguments).current_dir(folder()).output().unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         (serde_json::from_slice(&output.stdout).unwrap(), output.stderr)
     };
@@ -127,25 +124,18 @@ fn schema_and_plan_print_json() {
     let rows = plan.as_array().unwrap();
     assert_eq!(rows.len(), 108);
     for row in rows {
-        assert_eq!(row["job"].as_str().unwrap().len(), 32);
-        match row["status"].as_str().unwrap() {
-            "job" => assert!(row["reason"].is_null() && row["phi"].as_f64().unwrap() > 0.0),
-            "infeasible" => {
-                assert!(!row["reason"].as_str().unwrap().is_empty() && row["phi"].is_null());
-                assert!(row["nearest"].as_str().unwrap().contains("M = 3"), "{row}");
-            }
-            other => panic!("{other}"),
-        }
+        let job = row["status"] == "job";
+        assert_eq!((row["reason"].is_null(), row["phi"].is_number()), (job, job), "{row}");
+        assert!(job || row["nearest"].as_str().unwrap().contains("M = 3"), "{row}");
     }
     // At the paper's ratio, two storeys of six panels cannot reach 1 m, three can.
-    let feasible = |panels: u64, storeys: u64| {
+    let feasible = |storeys: u64| {
         rows.iter().any(|row| {
-            row["N"] == panels
-                && row["M"] == storeys
+            (&row["N"], &row["M"]) == (&6.into(), &storeys.into())
                 && row["alpha1_over_phi"] == 1.0
                 && row["status"] == "job"
         })
     };
-    assert!(!feasible(6, 2) && feasible(6, 3) && feasible(6, 4));
+    assert!(!feasible(2) && feasible(3) && feasible(4));
     assert!(String::from_utf8(stderr).unwrap().contains("78 jobs, 0 duplicates, 30 infeasible"));
 }

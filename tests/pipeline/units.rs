@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::{Value, json};
 
-use crate::support::{TestFolder, grid, paper_design, small_grid, stderr};
+use crate::support::{TestFolder, grid, json_of, paper_design, small_grid, stderr};
 
 /// Two flow rates in g/s, one temperature in °C, a loss factor in %.
 fn study() -> Value {
@@ -49,27 +49,21 @@ fn tables_show_the_units_of_the_study() {
     assert_eq!(table(&["--format", "csv"]), table(&["--format", "csv", "--si"]));
     assert!(table(&["--format", "csv"]).contains("\n0.001,293.15,"));
 
+    // Units of the study, which are no other study.
+    let mut other = study();
+    other["units"] = json!({"t_90_z_rim": "us"});
+    fs::write(folder.path().join("grid.json"), other.to_string()).unwrap();
+    let output = folder.run(&["table", "grid.json"]);
+    assert!(!stderr(&output).contains("is not the study"), "{}", stderr(&output));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("(us)"));
+    let other = folder.run(&["table", "grid.json", "--set", "film.numerical_damping=0.05"]);
+    assert!(stderr(&other).contains("(film.numerical_damping 0.0001 → 0.05)"), "{other:?}");
+
     let plan = folder.stdout(&["plan", "grid.json", "-q"]);
     assert!(["(g/s)", "(degC)"].iter().all(|unit| words(&plan)[1].contains(unit)), "{plan}");
     let by = ["compare", "-q", "--by", "mass_flow_rate", "--base", "1 g/s"];
     let compared = folder.stdout(&by);
     assert!(words(&compared)[1].starts_with(&["(degC)", "(g/s)", "(s)"]), "{compared}");
-}
-
-#[test]
-fn a_study_says_in_which_units_it_is_shown() {
-    let mut study = study();
-    study["units"] = json!({"t_90_z_rim": "ms", "mass_flow_rate": "mg/s"});
-    let folder = TestFolder::finished(&study);
-    let table = ["table", "-q", "--columns", "mass_flow_rate,t_90_z_rim", "results/grid"];
-    assert_eq!(words(&folder.stdout(&table))[1], ["(mg/s)", "(ms)"]);
-    // Other units are the same study.
-    let units = json!({"t_90_z_rim": "us"});
-    study["units"] = units;
-    fs::write(folder.path().join("grid.json"), study.to_string()).unwrap();
-    let output = folder.run(&["table", "grid.json"]);
-    assert!(!stderr(&output).contains("is not the study"), "{}", stderr(&output));
-    assert!(String::from_utf8_lossy(&output.stdout).contains("(us)"));
 }
 
 #[test]
@@ -148,31 +142,18 @@ fn a_scene_warns_as_well() {
     }
 }
 
+/// The studies of the README; those of `studies/` are planned where their job ids are tested.
 #[test]
-fn shipped_studies_and_scenes_give_no_warning() {
+fn studies_of_the_readme_give_no_warning() {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
-    let folder = TestFolder::new(&study());
-    let mut files: Vec<String> = Vec::new();
-    for entry in fs::read_dir(format!("{root}/studies")).unwrap() {
-        let path = entry.unwrap().path();
-        // The map of failure is no study; it has a test of its own.
-        let study = !path.ends_with("stability.json");
-        if study && path.extension().is_some_and(|extension| extension == "json") {
-            files.push(path.display().to_string());
-        }
-    }
     let readme = fs::read_to_string(format!("{root}/README.md")).unwrap();
     let blocks = readme.split("```json\n").skip(1).filter_map(|rest| rest.split("```").next());
-    for (index, block) in blocks.enumerate() {
-        let path = folder.path().join(format!("readme{index}.json"));
-        fs::write(&path, block).unwrap();
-        files.push(path.display().to_string());
-    }
-    assert!(files.len() > 4, "{files:?}");
-    for file in files {
-        let output = folder.run(&["plan", &file, "--format", "csv"]);
-        assert!(output.status.success(), "{file}: {}", stderr(&output));
-        assert!(!stderr(&output).contains("warning"), "{file}: {}", stderr(&output));
+    let folder = TestFolder::new(&study());
+    for block in blocks {
+        fs::write(folder.path().join("readme.json"), block).unwrap();
+        let output = folder.run(&["plan", "readme.json"]);
+        assert!(output.status.success(), "{block}: {}", stderr(&output));
+        assert!(!stderr(&output).contains("warning"), "{block}: {}", stderr(&output));
     }
 }
 
@@ -186,35 +167,7 @@ fn keys_of_the_study_are_columns() {
     assert_eq!(words(&table)[0].join(","), columns);
     assert_eq!(words(&table)[1], ["(%)", "(s)", "(g/s)"]);
     assert_eq!(words(&table)[2..], [["1.5", "5", "0.6", "5", "piston"]]);
-    let rows: Value =
-        serde_json::from_str(&folder.stdout(&[&asked[..], &["--json"]].concat())).unwrap();
-    assert_eq!(rows[0]["film.loss_factor"], 0.015);
+    assert_eq!(json_of(&folder, &asked)[0]["film.loss_factor"], 0.015);
     let sorted = folder.stdout(&["table", "-q", "--sort", "final_temperature:desc"]);
     assert!(words(&sorted)[0].contains(&"final_temperature"), "{sorted}");
-
-    let pairs = ["compare", "-q", "--by", "mass_flow_rate", "--base", "1 g/s", "--json"];
-    let pairs: Value = serde_json::from_str(
-        &folder.stdout(&[&pairs[..], &["--where", "film.loss_factor < 1 %"]].concat()),
-    )
-    .unwrap();
-    assert_eq!(pairs, json!([]));
-}
-
-#[test]
-fn show_has_the_names_and_units_of_the_study() {
-    let folder = TestFolder::finished(&study());
-    let job = folder.rows("results/grid")[1]["job"].as_str().unwrap().to_owned();
-    let shown = folder.stdout(&["job", &job, "--all"]);
-    assert!(shown.contains("scene       film.numerical_damping "), "{shown}");
-    assert!(shown.contains("scene       gas.windows[0].mass_flow_rate "), "{shown}");
-    assert!(shown.contains("scene       outputs.thresholds.near_threshold_margin "), "{shown}");
-    assert!(!shown.contains("viscosity") && !shown.contains("close_margin"), "{shown}");
-    let line = shown.lines().find(|line| line.starts_with("parameters  mass_flow_rate")).unwrap();
-    assert!(words(line)[0][2..].starts_with(&["5", "g/s"]), "{line}");
-    let history = ["job", &job, "--history", "--every", "1000"];
-    let output = folder.run(&[&history[..], &["--columns", "gas_residual"]].concat());
-    assert!(!stderr(&output).contains("units:"), "{}", stderr(&output));
-    let output =
-        folder.stdout(&[&history[..], &["--columns", "time", "--units", "time=ms"]].concat());
-    assert_eq!(words(&output)[1], ["(ms)"]);
 }

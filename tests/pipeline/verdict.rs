@@ -76,17 +76,3 @@ fn equal_motion_has_equal_times() {
     let since = number(held, "t_50_z_rim") - number(held, "t_50_z_rim_since_release");
     assert!((since - 0.02).abs() < 1e-12, "{held}");
 }
-
-#[test]
-fn a_capsule_without_gas_is_stalled() {
-    let empty = json!({"gas": {"mass_flow_rate": 0, "residual_gas_mass": 0}});
-    for model in ["piston", "film"] {
-        let solver = json!({"model": model, "end_time": "5 ms"});
-        let folder = TestFolder::finished(&study(&solver, &empty));
-        let row = &folder.rows("results/grid")[0];
-        assert_eq!((&row["status"], &row["verdict"]), (&json!("done"), &json!("stalled")), "{row}");
-        assert!(number(row, "volume_ratio") < 0.1, "{row}");
-        let reference = number(row, "reference_overpressure");
-        assert!(reference < 1.0 && number(row, "final_overpressure") == 0.0, "{row}");
-    }
-}

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use crate::support::{TestFolder, grid, stderr};
+use crate::support::{TestFolder, grid, json_of};
 
 /// Film on two coarse meshes, and the piston, of one capsule for a few milliseconds.
 fn study() -> serde_json::Value {
@@ -26,8 +26,7 @@ fn study() -> serde_json::Value {
 fn the_front_is_printed_and_drawn() {
     let folder = TestFolder::new(&study());
     folder.stdout(&["run", "grid.json", "-q"]);
-    let printed = folder.stdout(&["chart", "grid.json", "--work-precision", "--json"]);
-    let rows: serde_json::Value = serde_json::from_str(&printed).unwrap();
+    let rows = json_of(&folder, &["chart", "grid.json", "--work-precision"]);
     let rows = rows.as_array().unwrap();
     let of = |scene: &'static str, quantity: &'static str| {
         rows.iter().filter(move |row| row["scene"] == scene && row["quantity"] == quantity)
@@ -41,12 +40,6 @@ fn the_front_is_printed_and_drawn() {
         row.unwrap()["runs"].clone()
     };
     assert_eq!((runs("piston"), runs("film")), (json!(1), json!(2)));
-    // The error of the table follows from its values.
-    let reference = energies[0]["reference"].as_f64().unwrap();
-    let piston = energies.iter().find(|row| row["configuration"] == "piston").unwrap();
-    let expected = (piston["value"].as_f64().unwrap() / reference - 1.0).abs();
-    assert!((piston["error"].as_f64().unwrap() - expected).abs() < 1e-12);
-    assert_eq!(of("late", "volume").count(), 3, "courses are compared too");
     let seconds = ["chart", "grid.json", "--work-precision", "--cost", "seconds"];
     let front = folder.stdout(&seconds);
     assert!(
@@ -59,6 +52,4 @@ fn the_front_is_printed_and_drawn() {
             assert!(std::fs::metadata(&path).unwrap().len() > 1000, "{}", path.display());
         }
     }
-    let doctor = folder.run(&["doctor"]);
-    assert_eq!(doctor.status.code(), Some(0), "{}", stderr(&doctor));
 }

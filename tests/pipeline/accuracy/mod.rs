@@ -15,7 +15,7 @@ fn said(output: &Output) -> String {
 }
 
 /// The paper's capsule on coarse film for some milliseconds.
-fn film(more: &Value) -> Value {
+pub(crate) fn film(more: &Value) -> Value {
     let mut study = json!({
         "design": {
             "N": 6, "M": 3, "bottom_radius": "500 mm", "top_radius": "365 mm", "height": "1 m"

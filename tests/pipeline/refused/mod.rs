@@ -6,14 +6,14 @@ use std::fs;
 
 use serde_json::{Value, json};
 
-use crate::search::searching;
+use crate::search::{replicated, searching};
 use crate::solve::CUBE;
 use crate::support::{TestFolder, grid, stderr};
 
 /// The cases, one a line: what is done, and parts of the message after `=>`, separated by `;;`. `\n` is the end of a line,
-/// `␣` a blank within a word. What is done is a command line (`{job}` is the id of a finished job), or a change of a valid
-/// file: `study KEY = JSON`, `search`, `seeds` (a search with replicates) for `plan`; `scene` (a cube), `sheets` (two sheets
-/// that touch), `capsule` for `solve`.
+/// `␣` a blank within a word. What is done is a command line (`{job}` is the id of a finished job), or changes of a valid
+/// file, separated by `&&`: `study KEY = JSON`, `film` (a study of film), `search`, `seeds` (a search with replicates) for
+/// `plan`; `scene` (a cube), `sheets` (two sheets that touch), `capsule` for `solve`.
 const CASES: &str = include_str!("cases.txt");
 
 /// Files with a mistake: name and content.
@@ -35,6 +35,7 @@ const FILES: &[(&str, &[u8])] = &[
     ("range.json", b"{\n  \"design\": {\n    \"N\": 3\n  }\n}\n"),
     ("filter.json", b"{\"grid\": {\"N\": [5, 6], \"filter\": \"n > 5\"}}"),
     ("empty.json", b""),
+    ("zip.json", b"{\"grid\": {\"zip\": [{\"N\": [5, 6], \"M\": [3, 4]}]}}"),
     ("table.json", b"PAR1 and so on"),
     ("scene.json", b"{\"format\": \"billow-scene\", \"mesh\": {\"positions\": \"spere.obj\"}}"),
     ("sphere.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
@@ -86,6 +87,7 @@ fn meshes(folder: &TestFolder) {
         ("twisted.obj", CUBE.replace("f 5 6 7 8", "f 8 7 6 5")),
         ("sheets.obj", sheets),
         ("capsule.json", crate::solve::capsule().to_string()),
+        ("search.json", replicated().to_string()),
     ] {
         fs::write(folder.path().join(name), text).unwrap();
     }
@@ -115,6 +117,7 @@ fn valid(kind: &str) -> Option<(&'static str, Value)> {
             Some(("solve", scene))
         }
         "capsule" => Some(("solve", crate::solve::capsule())),
+        "film" => Some(("plan", crate::accuracy::film(&json!({})))),
         "search" => Some(("plan", searching())),
         "seeds" => {
             let mut study = searching();
@@ -127,15 +130,16 @@ fn valid(kind: &str) -> Option<(&'static str, Value)> {
 
 /// The command line of a case; writes the file that it reads.
 fn command(folder: &TestFolder, case: &str, job: &str) -> Vec<String> {
-    let (kind, change) = case.split_once(' ').unwrap_or((case, ""));
+    let (kind, changes) = case.split_once(' ').unwrap_or((case, ""));
     let Some((command, mut json)) = valid(kind) else {
         let word = |word: &str| word.replace("{job}", job).replace('␣', " ");
         return case.split_whitespace().map(word).collect();
     };
-    let (key, value) = change.split_once(" = ").expect("KEY = JSON");
-    let value = serde_json::from_str(value).unwrap_or_else(|error| panic!("{case}: {error}"));
-    let place = key.split('.').fold(&mut json, |json, part| &mut json[part]);
-    *place = value;
+    for change in changes.split(" && ") {
+        let (key, value) = change.split_once(" = ").expect("KEY = JSON");
+        let value = serde_json::from_str(value).unwrap_or_else(|error| panic!("{case}: {error}"));
+        *key.split('.').fold(&mut json, |json, part| &mut json[part]) = value;
+    }
     fs::write(folder.path().join("changed.json"), json.to_string()).unwrap();
     vec![command.to_owned(), "changed.json".to_owned()]
 }
@@ -170,7 +174,7 @@ fn every_mistake_gives_a_message_with_place_and_next_step() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
     assert_eq!(names(&folder), before, "no file is written");
     // The files that the cases change are valid.
-    for kind in ["study", "search", "seeds", "scene", "capsule"] {
+    for kind in ["study", "film", "search", "seeds", "scene", "capsule"] {
         let (command, json) = valid(kind).unwrap();
         fs::write(folder.path().join("changed.json"), json.to_string()).unwrap();
         folder.stdout(&[command, "changed.json", "-q"]);
@@ -210,16 +214,9 @@ fn texts_of_the_user_are_cut_and_cannot_act_on_the_terminal() {
         &["plan", escape],
         &["plan", "grid.json", "--set", &set],
         &["plan", "grid.json", "--set", escape],
-        &["plan", "grid.json", &long],
-        &["table", &long],
-        &["table", "grid", "--columns", &long],
         &["table", "grid", "--where", &long],
-        &["table", "grid", "--format", &long],
-        &["job", &long, "grid"],
         &["job", escape, "grid"],
         &["keys", &long],
-        &["keys", escape],
-        &[&long],
         &[escape],
     ] {
         let output = folder.run(arguments);
