@@ -97,10 +97,9 @@ pub fn squeezed_bag(rig: &Rig, compressions: &[f64]) -> Outcome {
     };
     let mut judged = Vec::new();
     for &compression in compressions {
-        let supply = GasSupply { initial_mass: 2e-7, ..nitrogen_supply() };
         let plates = vec![half(1.0), half(-1.0)];
         let scene = FilmScene {
-            filling: Filling::Gas { supply, initial_temperature: 293.0 },
+            filling: nitrogen_filling(2e-7, 293.0),
             contact: Some(FilmContact { plates, ..monitored_contact(DISTANCE) }),
             ..free_film(shell.clone(), Film { compression, ..damped() })
         };

@@ -6,11 +6,19 @@
 //! ```
 
 use billow_solver::collision::monitor::intersections::intersections;
+use billow_solver::integrators::{FilmSimulation, FilmView};
 use billow_solver::output::ledger::residuals;
+use billow_solver::scene::film_scene::FilmContact;
 use billow_solver::scene::monitor_settings::MonitorSettings;
+use billow_solver::scene::motion::{Motion, Profile};
 use billow_solver::scene::plate::Plate;
+use billow_solver::scene::timeline::Phase;
+use nalgebra::Vector3;
 
-use super::prelude::*;
+use super::Result;
+use super::reference::number;
+use super::rig::advance;
+use super::row::{Row, worse};
 
 /// Contact at this distance (m), with the tunnelling monitor at every step.
 pub fn monitored_contact(distance: f64) -> FilmContact {

@@ -36,9 +36,8 @@ fn slice(radius: f64, gap: f64) -> FilmScene {
     let mut shell: Shell = tube(AROUND, 1, radius, width(radius));
     let tips = shell.close(|_| Matrix3::identity());
     let volume = shell.volume(|node| shell.positions[node as usize]);
-    let nitrogen = nitrogen_supply();
-    let initial_mass = PRESSURE * volume / (nitrogen.species.gas_constant * TEMPERATURE);
-    let supply = GasSupply { initial_mass, ..nitrogen };
+    let gas_constant = nitrogen_supply().species.gas_constant;
+    let mass = PRESSURE * volume / (gas_constant * TEMPERATURE);
     // The plates start one contact distance off the tube and end one off the film.
     let (start, end) = (radius + DISTANCE, 0.5 * gap + DISTANCE);
     let half = |sign: f64| {
@@ -46,7 +45,7 @@ fn slice(radius: f64, gap: f64) -> FilmScene {
         plate(up * start, -up, Some((up * (end - start), CLOSED)))
     };
     let mut scene = FilmScene {
-        filling: Filling::Gas { supply, initial_temperature: TEMPERATURE },
+        filling: nitrogen_filling(mass, TEMPERATURE),
         supports: vec![held((0..2 * AROUND).collect(), "z"), held(tips, "xyz")],
         contact: Some(FilmContact {
             plates: vec![half(1.0), half(-1.0)],

@@ -47,16 +47,10 @@ pub(super) fn sphere_ledger(rig: &Rig) -> Outcome {
         });
     }
     let largest = |series: Vec<f64>| series.into_iter().fold(0.0, worse);
+    let film = largest(residuals(&ledgers));
+    let gas = largest(gas_residuals(&balances));
     Ok(vec![
-        Row::at_most(
-            "film energy residual",
-            largest(residuals(&ledgers)),
-            number("ledger/sphere_band"),
-        ),
-        Row::at_most(
-            "gas energy residual",
-            largest(gas_residuals(&balances)),
-            number("ledger/gas_band"),
-        ),
+        Row::at_most("film energy residual", film, number("ledger/sphere_band")),
+        Row::at_most("gas energy residual", gas, number("ledger/gas_band")),
     ])
 }

@@ -48,25 +48,19 @@ pub fn rigid_rotation(rig: &Rig) -> Outcome {
     );
     let after = numerical_forces(model, &spun, &histories);
     let after = after.iter().map(|force| force.norm()).fold(0.0, worse);
-    let band = number("rigid_rotation/band");
-    Ok(vec![
-        Row::at_most("force over E t h", force / scale, band),
-        Row::at_most(
-            "numerical force after a rotation in one step, over E t h",
-            after / scale,
-            band,
-        ),
-        Row::at_most(
-            "numerical dissipation of this rotation over E t h^2",
-            stepped.numerical_dissipation.abs() / (scale * 0.1),
-            band,
-        ),
-        Row::at_most(
-            "strain energy over E t h^2",
-            film.view().strain_energy() / (scale * 0.1),
-            band,
-        ),
-    ])
+    let energy = scale * 0.1;
+    Ok(Row::each_at_most(
+        number("rigid_rotation/band"),
+        [
+            ("force over E t h", force / scale),
+            ("numerical force after a rotation in one step, over E t h", after / scale),
+            (
+                "numerical dissipation of this rotation over E t h^2",
+                stepped.numerical_dissipation.abs() / energy,
+            ),
+            ("strain energy over E t h^2", film.view().strain_energy() / energy),
+        ],
+    ))
 }
 
 /// Σ m v, Σ m x × v and Σ |m v|.
@@ -88,31 +82,23 @@ pub fn momenta(rig: &Rig) -> Outcome {
     let kicks = pseudo_random(shell.positions.len(), 5);
     let velocity = |(x, kick): (&Vector3<f64>, Vector3<f64>)| spin.cross(x) + kick * 0.5 + throw;
     let velocities = shell.positions.iter().zip(kicks).map(velocity).collect();
-    let filling = Filling::Gas {
-        supply: GasSupply { initial_mass: 5e-3, ..nitrogen_supply() },
-        initial_temperature: 293.0,
-    };
+    let filling = nitrogen_filling(5e-3, 293.0);
     let film = Film { numerical_damping: 0.1, ..Film::PAPER };
     let mut film = rig.start(&FilmScene { velocities, filling, ..free_film(shell, film) })?;
     let before = momentum(&film.view());
     let target = 1e5 * film.view().next_step();
     advance(&mut film, target, &Phase::default())?;
     let after = momentum(&film.view());
-    let band = number("momentum/band");
     let relative = |change: Vector3<f64>| change.norm() / before.2;
-    Ok(vec![
-        Row::at_least("steps", film.view().steps() as f64, 1e5),
-        Row::at_most(
-            "change of linear momentum over sum of |m v|",
-            relative(after.0 - before.0),
-            band,
-        ),
-        Row::at_most(
-            "change of angular momentum over sum of |m v|, m",
-            relative(after.1 - before.1),
-            band,
-        ),
-    ])
+    let changes = Row::each_at_most(
+        number("momentum/band"),
+        [
+            ("change of linear momentum over sum of |m v|", relative(after.0 - before.0)),
+            ("change of angular momentum over sum of |m v|, m", relative(after.1 - before.1)),
+        ],
+    );
+    let steps = Row::at_least("steps", film.view().steps() as f64, 1e5);
+    Ok([vec![steps], changes].concat())
 }
 
 /// Wrinkled film in simple shear without transverse stretch: the stress of the tension field.

@@ -22,6 +22,8 @@ pub use nalgebra::Vector3;
 
 pub use super::contact_rig::{monitored_contact, plate, run_recorded};
 pub use super::reference::{entry, number, numbers, rows};
-pub use super::rig::{Rig, advance, compliant, equilibrium, held, inflated, mean};
+pub use super::rig::{
+    Rig, advance, compliant, equilibrium, held, inflated, mean, nitrogen_filling,
+};
 pub use super::row::{Row, each, refined, worse};
 pub use super::{Outcome, Result};

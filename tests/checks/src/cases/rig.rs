@@ -1,16 +1,26 @@
 //! What the cases share: supports and inflow, advancing film, and the deliberate fault that a test
 //! may inject.
 
+use std::ops::ControlFlow;
+
+use billow_solver::geometry::shell::Shell;
+use billow_solver::integrators::FilmSimulation;
 use billow_solver::integrators::StoredIntegrator;
 use billow_solver::integrators::explicit::StoredExplicit;
+use billow_solver::models::film::capsule;
 use billow_solver::output::outcome::Failure;
 use billow_solver::platform::fault_injection::Fault;
 use billow_solver::platform::simd::InstructionSet;
+use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::film_support::{FilmSupport, Hold};
 use billow_solver::scene::inflow::Inflow;
+use billow_solver::scene::paper::{free_film, nitrogen_supply};
+use billow_solver::scene::timeline::Phase;
+use billow_solver::scene::{Film, GasSupply};
 use billow_solver::statics::{self, StaticSolution};
-use std::ops::ControlFlow;
+use nalgebra::Vector3;
 
-use super::prelude::*;
+use super::Result;
 
 /// How cases are run: as they are, or with a deliberate fault that a case must detect.
 pub struct Rig {
@@ -55,6 +65,12 @@ impl Rig {
 pub fn held(nodes: Vec<u32>, fix: &str) -> FilmSupport {
     let hold = Hold::Components(['x', 'y', 'z'].map(|axis| fix.contains(axis)));
     FilmSupport { name: "held".to_owned(), nodes, hold, motion: None }
+}
+
+/// Nitrogen of this mass (kg) and temperature (K).
+pub fn nitrogen_filling(initial_mass: f64, initial_temperature: f64) -> Filling {
+    let supply = GasSupply { initial_mass, ..nitrogen_supply() };
+    Filling::Gas { supply, initial_temperature }
 }
 
 /// Film in motion while gas enters at this rate (kg/s) and temperature (K).

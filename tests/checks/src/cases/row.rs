@@ -37,6 +37,11 @@ impl Row {
         Self::judged(quantity, value, None, value, ceiling)
     }
 
+    /// Values that should be zero and may be at most `ceiling`.
+    pub fn each_at_most<const N: usize>(ceiling: f64, values: [(&str, f64); N]) -> Vec<Self> {
+        values.map(|(quantity, value)| Self::at_most(quantity, value, ceiling)).into()
+    }
+
     /// A value that must be `floor` or more.
     pub fn at_least(quantity: &str, value: f64, floor: f64) -> Self {
         let error = if value >= floor { 0.0 } else { (1.0 - value / floor).abs() };

@@ -36,12 +36,8 @@ fn equilibrium(rig: &Rig, level: u32, overpressure: f64) -> Result<FilmSimulatio
 
 /// Gas of this pressure (Pa) in this volume (m³).
 fn filled(pressure: f64, volume: f64) -> Filling {
-    let nitrogen = nitrogen_supply();
-    let initial_mass = pressure * volume / (nitrogen.species.gas_constant * TEMPERATURE);
-    Filling::Gas {
-        supply: GasSupply { initial_mass, ..nitrogen },
-        initial_temperature: TEMPERATURE,
-    }
+    let gas_constant = nitrogen_supply().species.gas_constant;
+    nitrogen_filling(pressure * volume / (gas_constant * TEMPERATURE), TEMPERATURE)
 }
 
 /// A sphere that starts to breathe about its equilibrium at this pressure (Pa), and its volume at rest (m³), with an

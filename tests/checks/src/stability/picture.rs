@@ -44,29 +44,22 @@ fn look(status: &str) -> Cell {
     Cell { ground, sign: Some(sign), ..Cell::default() }
 }
 
+/// The letters of the audits, in the order of [`AuditKind::ALL`].
+const AUDIT_LETTERS: &str = "MSXLGVNWAUCPI";
+/// The letters of what ends a run beside them.
+const OTHER_LETTERS: [(&str, &str); 5] = [
+    ("scene_check", "R"),
+    ("panic", "!"),
+    ("iteration_limit", "K"),
+    ("stalled", "T"),
+    ("not_finite", "Q"),
+];
+
 /// The letter of an audit; empty for one without a letter.
 fn letter(audit: &str) -> &'static str {
-    let kind = AuditKind::ALL.into_iter().find(|kind| kind.name() == audit);
-    match (kind, audit) {
-        (Some(AuditKind::FiniteMotion), _) => "M",
-        (Some(AuditKind::EnergySource), _) => "S",
-        (Some(AuditKind::Stretch), _) => "X",
-        (Some(AuditKind::EnergyLedger), _) => "L",
-        (Some(AuditKind::GasBalance), _) => "G",
-        (Some(AuditKind::Volume), _) => "V",
-        (Some(AuditKind::StepLimit), _) => "N",
-        (Some(AuditKind::Motion), _) => "W",
-        (Some(AuditKind::Mass), _) => "A",
-        (Some(AuditKind::Pressure), _) => "U",
-        (Some(AuditKind::Contact), _) => "C",
-        (Some(AuditKind::Passages), _) => "P",
-        (Some(AuditKind::Intersections), _) => "I",
-        (None, "scene_check") => "R",
-        (None, "panic") => "!",
-        (None, "iteration_limit") => "K",
-        (None, "stalled") => "T",
-        (None, "not_finite") => "Q",
-        _ => "",
+    match AuditKind::ALL.iter().position(|kind| kind.name() == audit) {
+        Some(place) => AUDIT_LETTERS.get(place..=place).unwrap_or(""),
+        None => OTHER_LETTERS.iter().find(|(name, _)| *name == audit).map_or("", |(_, l)| l),
     }
 }
 
