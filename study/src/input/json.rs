@@ -48,6 +48,18 @@ impl Json {
         }
     }
 
+    /// The whole number that it is, within ±2^53 where it is written with a fraction or an exponent.
+    #[expect(clippy::cast_possible_truncation, reason = "checked to be whole and small")]
+    pub fn whole(&self) -> Option<i64> {
+        match self {
+            Self::Integer(number) => Some(*number),
+            Self::Number(number) => (number.fract() == 0.0
+                && number.abs() <= 9_007_199_254_740_992.0)
+                .then_some(*number as i64),
+            _ => None,
+        }
+    }
+
     /// Name of its type, with its article, for errors.
     pub fn kind(&self) -> &'static str {
         match self {

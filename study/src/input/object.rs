@@ -4,7 +4,6 @@ use nalgebra::Vector3;
 
 use crate::input::json::Json;
 use crate::input::keys::{Key, Refusal, Table};
-use crate::input::plausible;
 use crate::input::source::Source;
 use crate::input::value::Value;
 use crate::platform::error::InputError;
@@ -82,7 +81,7 @@ impl<'a> Object<'a> {
 
     fn value(&self, name: &str) -> Result<Value, InputError> {
         match self.given(name) {
-            Some(json) => read(self.key(name), json, &format!("{}.{name}", self.path), self.source),
+            Some(json) => self.key(name).value(json, &format!("{}.{name}", self.path), self.source),
             None => Ok(self.key(name).default_value()),
         }
     }
@@ -169,52 +168,6 @@ impl<'a> Object<'a> {
         } else {
             Err(self.error(name, "has no direction", "a vector of any length but 0"))
         }
-    }
-}
-
-/// Reads one value of a key; `path` is where the file gives it. A value that is not plausible is a
-/// warning of the source.
-pub(crate) fn read(
-    key: &Key,
-    json: &Json,
-    path: &str,
-    source: &Source,
-) -> Result<Value, InputError> {
-    let value = read_silently(key, json, path, source)?;
-    if let Some(implausible) = plausible::check(key, json, &value) {
-        source.warn(path, json, implausible);
-    }
-    Ok(value)
-}
-
-/// Reads one value of a key that no user wrote, as a value between the ends of a range.
-pub(crate) fn read_silently(
-    key: &Key,
-    json: &Json,
-    path: &str,
-    source: &Source,
-) -> Result<Value, InputError> {
-    key.read(json).map_err(|refusal| {
-        source.error(path, json, refusal.problem, refusal.allowed).with_hint(
-            match plausible::meant(key, json) {
-                Some(text) => format!("if {text} is meant, write {text:?}"),
-                None => format!("write it as in {}", key.sample()),
-            },
-        )
-    })
-}
-
-/// Reads one finite number of a key: an end of an axis.
-pub(crate) fn read_number(
-    key: &Key,
-    json: &Json,
-    path: &str,
-    source: &Source,
-) -> Result<f64, InputError> {
-    match read(key, json, path, source)? {
-        Value::Number(number) if number.is_finite() => Ok(number),
-        Value::Integer(number) => Ok(number as f64),
-        _ => Err(source.error(path, json, "is a word, not a number", key.allowed())),
     }
 }
 

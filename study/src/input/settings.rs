@@ -1,31 +1,29 @@
-//! The values of the keys of a file that hold one value: read from its tree, with defaults.
+//! The values of the keys of a file, and the parts of a scene that studies and scene files give by the same keys.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 
-use billow_solver::scene::Support;
-use serde_json::{Map, json};
+use billow_solver::geometry::fold::{Caps, FoldDesign};
+use billow_solver::scene::{
+    Contact, Film, GasSupply, HeatTransfer, InflowWindow, IntegratorKind, Species, Support,
+};
 
 use crate::input::json::Json;
 use crate::input::keys::{
-    KEYS, Key, Named, STRATEGY_KEYS, STUDY, Table, WINDOW_KEYS, pick, position,
+    CAPS, CHIRALITIES, FITS, INTEGRATORS, ISOTHERMAL, Key, Named, SPECIES, STRATEGY_KEYS, Table,
+    WINDOW_KEYS, pick, position,
 };
-use crate::input::object::{object, read};
-use crate::input::plausible::Implausible;
 use crate::input::source::{Source, shown};
-use crate::input::strategy::{self, Row};
-use crate::input::supports;
-use crate::input::value::{Value, json_value};
+use crate::input::value::Value;
 use crate::platform::error::InputError;
-use crate::platform::nearest::{did_you_mean, nearest};
+use crate::platform::nearest::nearest;
 
 /// Where a strategy stands among the values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Strategy {
     /// Position of the first value of [`STRATEGY_KEYS`]; the windows follow.
-    start: usize,
+    pub(super) start: usize,
     /// Number of its inflow windows.
-    windows: usize,
+    pub(super) windows: usize,
 }
 
 /// What an inflow window gives; the study or the strategy decides the rest.
@@ -47,10 +45,10 @@ pub(crate) struct Window {
 /// strategies follow.
 #[derive(Debug, Clone)]
 pub(crate) struct Settings {
-    table: &'static Table,
-    values: Vec<Value>,
+    pub(super) table: &'static Table,
+    pub(super) values: Vec<Value>,
     /// Paths and keys of the values beyond the table: those of strategies and their inflow windows.
-    rows: Vec<(String, &'static Key)>,
+    pub(super) rows: Vec<(String, &'static Key)>,
     /// The inflation strategies of a study, by name.
     pub strategies: BTreeMap<String, Strategy>,
     /// What holds the capsule of a study.
@@ -71,28 +69,6 @@ impl Settings {
         let values = table.keys.iter().map(|key| key.default_value()).collect();
         let (rows, strategies, supports) = (Vec::new(), BTreeMap::new(), Vec::new());
         Self { table, values, rows, strategies, supports }
-    }
-
-    /// Reads a study: the value of every key, its strategies and supports.
-    ///
-    /// # Errors
-    /// The first key with a value that it does not allow; a name that is no key.
-    pub fn of_study(tree: &Json, source: &Source) -> Result<Self, InputError> {
-        check_version(tree, source)?;
-        let mut settings = Self::new(&STUDY);
-        settings.read("", tree, source)?;
-        settings.check_stepping(tree, source)?;
-        settings.supports = supports::read(tree.get("supports"), source)?;
-        if let Some(json) = tree.get("strategies") {
-            for (name, value) in object(json, &STUDY, "strategies", source)? {
-                settings.add_strategy(name, strategy::read(name, value, source)?);
-            }
-        }
-        if !settings.strategies.contains_key("direct") {
-            settings.add_strategy("direct", strategy::direct());
-        }
-        settings.check_strategy(settings.strategy_name(), "strategy", source)?;
-        Ok(settings)
     }
 
     /// The value of a key, by its position in the table.
@@ -116,61 +92,6 @@ impl Settings {
                 self.values[excluded] = Value::Null;
             }
         }
-    }
-
-    /// Reads the keys below `prefix`.
-    pub fn read(&mut self, prefix: &str, json: &Json, source: &Source) -> Result<(), InputError> {
-        let table = self.table;
-        for (name, value) in object(json, table, prefix, source)? {
-            let path = if prefix.is_empty() { name.clone() } else { format!("{prefix}.{name}") };
-            let section = table.is_section(&path);
-            let structured = table.structured.iter().any(|(known, _)| *known == path);
-            match table.index(&path) {
-                // A species is a word or a section.
-                Some(index) if section && matches!(value, Json::Object(_)) => {
-                    self.read(&path, value, source)?;
-                    check_species(&path, value, source)?;
-                    self.values[index] = Value::Null;
-                }
-                Some(index) => self.values[index] = read(table.keys[index], value, &path, source)?,
-                None if section => self.read(&path, value, source)?,
-                None if structured => {}
-                None => return Err(unknown(table, prefix, &path, name, value, source)),
-            }
-        }
-        Ok(())
-    }
-
-    /// Refuses a step that is both adaptive and fixed; a fixed one replaces the default tolerance.
-    fn check_stepping(&mut self, tree: &Json, source: &Source) -> Result<(), InputError> {
-        let stepping = tree.get("solver").and_then(|solver| solver.get("stepping"));
-        if let Some(stepping) = stepping {
-            let given = |key: &str| stepping.get(key).is_some();
-            if given("adaptive") && given("fixed") {
-                return Err(source.error(
-                    "solver.stepping",
-                    stepping,
-                    "gives both adaptive and fixed",
-                    "one of {\"adaptive\": 1e-6}, {\"fixed\": \"10 us\"}",
-                ));
-            }
-            if given("fixed") {
-                let index = const { position(KEYS, "solver.stepping.fixed") };
-                let fixed = self.at(index).clone();
-                self.set(index, fixed);
-            }
-        }
-        Ok(())
-    }
-
-    fn add_strategy(&mut self, name: &str, rows: Vec<Row>) {
-        let windows = (rows.len() - STRATEGY_KEYS.len()) / WINDOW_KEYS.len();
-        let strategy = Strategy { start: self.values.len(), windows };
-        for (path, key, value) in rows {
-            self.rows.push((path, key));
-            self.values.push(value);
-        }
-        self.strategies.insert(name.to_owned(), strategy);
     }
 
     /// Time until which the lid holds the capsule, s.
@@ -241,39 +162,6 @@ impl Settings {
             .with_hint("name one of these, or define it under strategies"))
     }
 
-    /// Settings, strategies and supports, with every value they have.
-    pub fn to_json(&self) -> serde_json::Value {
-        let mut json = json!({});
-        for (key, value) in self.table.keys.iter().zip(&self.values) {
-            if *value == Value::Null {
-                continue;
-            }
-            let member = key.path.split('.').fold(&mut json, |object, part| &mut object[part]);
-            *member = json_value(value);
-        }
-        let members = |keys: &[Key], start: usize| {
-            let given = keys.iter().zip(&self.values[start..]);
-            let given = given.filter(|(_, value)| **value != Value::Null);
-            given
-                .map(|(key, value)| (key.path.to_owned(), json_value(value)))
-                .collect::<Map<_, _>>()
-        };
-        for (name, Strategy { start, windows }) in &self.strategies {
-            let first = start + STRATEGY_KEYS.len();
-            let windows =
-                (0..*windows).map(|n| members(WINDOW_KEYS, first + n * WINDOW_KEYS.len()));
-            let windows: Vec<_> = windows.collect();
-            json["strategies"][name] = members(STRATEGY_KEYS, *start).into();
-            json["strategies"][name]["inflow"] = json!(windows);
-        }
-        let supports = self
-            .supports
-            .iter()
-            .map(|support| json!({"on": supports::place_name(support.on), "fix": support.fix}));
-        json["supports"] = supports.collect::<Vec<_>>().into();
-        json
-    }
-
     /// The value of a key by its path.
     ///
     /// # Panics
@@ -332,6 +220,104 @@ impl Settings {
         self.picked(path, words).ok_or_else(|| self.missing(path, source))
     }
 
+    /// The fold design.
+    ///
+    /// # Errors
+    /// When the file does not give a key that it must give, as in all of these.
+    pub fn design(&self, source: &Source) -> Result<FoldDesign, InputError> {
+        Ok(FoldDesign {
+            fit: self.word("design.fit", &FITS, source)?,
+            panels: self.count("design.N", source)?,
+            storeys: self.count("design.M", source)?,
+            bottom_radius: self.needed("design.bottom_radius", source)?,
+            top_radius: self.number("design.top_radius"),
+            height: self.number("design.height"),
+            half_angle: self.number("design.half_angle"),
+            alpha1_over_phi: self.number("design.alpha1_over_phi"),
+            stowed_height: self.needed("design.stowed_height", source)?,
+            subdivisions: self.count("design.subdivisions", source)?,
+            chirality: self.word("design.chirality", &CHIRALITIES, source)?,
+            caps: self.picked("design.caps", &CAPS).unwrap_or(Caps::Polygon),
+        })
+    }
+
+    /// The film.
+    pub fn film(&self, source: &Source) -> Result<Film, InputError> {
+        Ok(Film {
+            youngs_modulus: self.needed("film.youngs_modulus", source)?,
+            poisson_ratio: self.needed("film.poisson_ratio", source)?,
+            density: self.needed("film.density", source)?,
+            thickness: self.needed("film.thickness", source)?,
+            compression: self.needed("film.compression", source)?,
+            numerical_damping: self.needed("film.numerical_damping", source)?,
+            temperature: self.needed("film.temperature", source)?,
+            loss_factor: self.needed("film.loss_factor", source)?,
+            loss_frequency: self.needed("film.loss_frequency", source)?,
+        })
+    }
+
+    /// The gas with this mass at the start and these inflow windows.
+    pub fn gas(
+        &self,
+        initial_mass: f64,
+        windows: Vec<InflowWindow>,
+        source: &Source,
+    ) -> Result<GasSupply, InputError> {
+        Ok(GasSupply {
+            species: self.species(source)?,
+            initial_mass,
+            windows,
+            ambient_pressure: self.needed("gas.ambient_pressure", source)?,
+            heat_transfer: match self.value("gas.heat_transfer") {
+                Value::Text(word) if word == ISOTHERMAL => HeatTransfer::Isothermal,
+                // The other word is adiabatic.
+                value => HeatTransfer::Coefficient(value.number().unwrap_or(0.0)),
+            },
+            leak_area: self.needed("gas.leak_area", source)?,
+            discharge_coefficient: self.needed("gas.discharge_coefficient", source)?,
+        })
+    }
+
+    /// The species of the gas: a named one, or one by its constants. A constant given in addition to a
+    /// name replaces that of the named gas.
+    ///
+    /// # Errors
+    /// When a constant is missing, or cp is not above the gas constant.
+    pub fn species(&self, source: &Source) -> Result<Species, InputError> {
+        const CP: &str = "gas.species.cp";
+        let named = self.picked("gas.species", &SPECIES);
+        let constant = |path, of: fn(Species) -> f64| match (self.number(path), named) {
+            (Some(given), _) => Ok(given),
+            (None, Some(gas)) => Ok(of(gas)),
+            (None, None) => self.needed(path, source),
+        };
+        let gas_constant = constant("gas.species.gas_constant", |gas| gas.gas_constant)?;
+        let cp = constant(CP, |gas| gas.cp)?;
+        if cp <= gas_constant {
+            return Err(source.error(
+                CP,
+                shown(cp),
+                "leaves no heat capacity at constant volume, cp - R",
+                format!("above the gas constant, {gas_constant} J/(kg K)"),
+            ));
+        }
+        Ok(Species { gas_constant, cp })
+    }
+
+    /// Contact of film with film.
+    pub fn contact(&self, source: &Source) -> Result<Contact, InputError> {
+        Ok(Contact {
+            distance: self.number("contact.distance"),
+            friction: self.needed("contact.friction", source)?,
+            adhesion: self.needed("contact.adhesion", source)?,
+        })
+    }
+
+    /// The integrator of film.
+    pub fn integrator(&self, source: &Source) -> Result<IntegratorKind, InputError> {
+        self.word("solver.integrator", &INTEGRATORS, source)
+    }
+
     /// The error of a key that the file does not give.
     pub fn missing(&self, path: &str, source: &Source) -> InputError {
         let key = self.table.keys[self.position(path)];
@@ -347,85 +333,4 @@ fn missing_key(key: &Key, source: &Source) -> InputError {
     source
         .error(key.path, "", "missing", key.allowed())
         .with_hint(format!("give it, as in {}", key.sample()))
-}
-
-/// A gas given by its constants has both.
-fn check_species(path: &str, species: &Json, source: &Source) -> Result<(), InputError> {
-    for key in ["gas_constant", "cp"] {
-        if species.get(key).is_none() {
-            return Err(source.error(
-                &format!("{path}.{key}"),
-                "",
-                "missing: a gas given by its constants needs gas_constant and cp",
-                "a specific heat in J/(kg K)",
-            ));
-        }
-    }
-    Ok(())
-}
-
-/// Refuses a newer format, before any other key is read: they may have another meaning there.
-pub(crate) fn check_version(tree: &Json, source: &Source) -> Result<(), InputError> {
-    match tree.get("version") {
-        Some(Json::Integer(version)) if *version > 1 => Err(source.error(
-            "version",
-            &version.to_string(),
-            "is a newer format than this program reads",
-            "1; or use a newer billow",
-        )),
-        _ => Ok(()),
-    }
-}
-
-/// Largest number of samples of one run (chosen: more is an error in a unit).
-const MAX_SAMPLES: f64 = 1e6;
-
-/// Number of samples that a run has at least, without a warning. Chosen: fewer cannot show a deployment.
-const MIN_SAMPLES: f64 = 20.0;
-
-/// Refuses a run with more than [`MAX_SAMPLES`] samples, and warns of one with few. Times in s.
-pub(crate) fn check_sample_interval(
-    interval: f64,
-    end_time: f64,
-    source: &Source,
-) -> Result<(), InputError> {
-    if end_time / interval <= MAX_SAMPLES {
-        if end_time < MIN_SAMPLES * interval {
-            let samples = (end_time / interval * (1.0 + 1e-9)).floor() + 1.0;
-            let end_time = shown(end_time);
-            let problem =
-                format!("gives {samples} sample(s) in a run of {end_time} s, too few for times");
-            let next = "check its unit; the default is \"1 ms\"".to_owned();
-            let value = format!("{} s", shown(interval));
-            source.warn_point("outputs.sample_interval", &value, Implausible { problem, next });
-        }
-        return Ok(());
-    }
-    Err(source.error(
-        "outputs.sample_interval",
-        shown(interval),
-        format!("samples a run of {} s more than {MAX_SAMPLES:.0} times", shown(end_time)),
-        format!("at least {} s for this end_time", shown(end_time / MAX_SAMPLES)),
-    ))
-}
-
-/// The error of a name that no key of the table has, with the nearest name that one has.
-fn unknown(
-    table: &Table,
-    prefix: &str,
-    path: &str,
-    name: &str,
-    value: &Json,
-    source: &Source,
-) -> InputError {
-    let known = table.children(prefix);
-    let mut problem = format!("is not a key of {}", table.what);
-    if prefix.is_empty() && name == "maps" {
-        problem.push_str("; a file of maps runs with make stability");
-    } else if let Some(question) = did_you_mean(name, known.iter().copied()) {
-        let _ = write!(problem, "; {question}");
-    } else if let Some(elsewhere) = table.find(name) {
-        let _ = write!(problem, "; did you mean {}?", table.keys[elsewhere].path);
-    }
-    source.error(path, value, problem, known.join(", "))
 }

@@ -4,8 +4,8 @@
 use billow_solver::scene::InflowWindow;
 
 use crate::input::keys::{RESIDUAL_GAS, ResidualGas};
-use crate::input::parts::warn_of_end;
 use crate::input::plausible::Implausible;
+use crate::input::sections::warn_of_end;
 use crate::input::settings::{Settings, Strategy, Window};
 use crate::input::source::{Source, shown};
 use crate::input::value::brief_number;

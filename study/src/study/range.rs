@@ -8,7 +8,7 @@
 
 use crate::input::json::Json;
 use crate::input::keys::{Key, KeyKind, RANGE_KEYS};
-use crate::input::object::{Object, read_number, read_silently};
+use crate::input::object::Object;
 use crate::input::source::Source;
 use crate::input::units;
 use crate::input::value::Value;
@@ -32,7 +32,7 @@ pub(super) fn values(
     };
     let object = Object::new(json, path, "a range", RANGE_KEYS, &["from", "to", "step"], source)?;
     let end = |name: &str| match object.given(name) {
-        Some(json) => read_number(key, json, &format!("{path}.{name}"), source),
+        Some(json) => key.finite(json, &format!("{path}.{name}"), source),
         None => Err(refuse("has no `from` or no `to`")),
     };
     let (from, to) = (end("from")?, end("to")?);
@@ -81,7 +81,7 @@ pub(super) fn values(
     };
     let value = |index: u32| {
         let path = format!("{path} (value {})", index + 1);
-        read_silently(key, &Json::Number(number(index)), &path, source)
+        key.value_silently(&Json::Number(number(index)), &path, source)
     };
     (0..).take_while(|index| f64::from(*index) < count).map(value).collect()
 }

@@ -2,11 +2,14 @@
 
 use std::fmt::Write as _;
 
-use super::quantity::{Quantity, integer};
+use super::quantity::Quantity;
 use super::words::Word;
 use crate::input::json::Json;
-use crate::input::units::Dimension;
+use crate::input::plausible;
+use crate::input::source::Source;
+use crate::input::units;
 use crate::input::value::Value;
+use crate::platform::error::InputError;
 use crate::platform::nearest::nearest;
 
 /// One key that holds one value: one row of a table of keys.
@@ -69,100 +72,7 @@ pub struct Refusal {
     pub allowed: String,
 }
 
-/// A row of a table.
-pub(super) const fn key(
-    path: &'static str,
-    kind: KeyKind,
-    default: Default,
-    example: &'static str,
-    doc: &'static str,
-) -> Key {
-    Key { path, kind, default, doc, example, study_only: false, excludes: &[] }
-}
-
-/// A quantity from `min` to `max`, both allowed.
-pub(super) const fn from(dimension: Dimension, min: f64, max: f64) -> KeyKind {
-    KeyKind::Quantity(Quantity { dimension, min, above: false, max, plausible: None, words: &[] })
-}
-
-/// A quantity above `min`, up to and including `max`.
-pub(super) const fn above(dimension: Dimension, min: f64, max: f64) -> KeyKind {
-    KeyKind::Quantity(Quantity { dimension, min, above: true, max, plausible: None, words: &[] })
-}
-
-/// Three quantities, each from −`max` to `max`.
-pub(super) const fn vector(dimension: Dimension, max: f64) -> KeyKind {
-    KeyKind::Vector(Quantity {
-        dimension,
-        min: -max,
-        above: false,
-        max,
-        plausible: None,
-        words: &[],
-    })
-}
-
-/// The same quantity, with its plausible range.
-pub(super) const fn likely(kind: KeyKind, low: f64, high: f64) -> KeyKind {
-    let plausible = Some([low, high]);
-    match kind {
-        KeyKind::Quantity(quantity) => KeyKind::Quantity(Quantity { plausible, ..quantity }),
-        other => other,
-    }
-}
-
-/// Position of a key in a table. In a `const` block, a name that the table does not have is a compile
-/// error.
-///
-/// # Panics
-/// When no key of the table has this path.
-pub const fn position(keys: &[Key], path: &str) -> usize {
-    let mut index = 0;
-    while index < keys.len() {
-        if same_text(keys[index].path, path) {
-            return index;
-        }
-        index += 1;
-    }
-    panic!("no key of this table has this path")
-}
-
-/// The key of a table with this path. In a `const` block, a name that the table does not have is a
-/// compile error.
-///
-/// # Panics
-/// When no key of the table has this path.
-pub const fn named(keys: &'static [Key], path: &str) -> &'static Key {
-    &keys[position(keys, path)]
-}
-
-/// Whether two texts are equal, at compile time.
-pub(super) const fn same_text(a: &str, b: &str) -> bool {
-    let (a, b) = (a.as_bytes(), b.as_bytes());
-    if a.len() != b.len() {
-        return false;
-    }
-    let mut index = 0;
-    while index < a.len() {
-        if a[index] != b[index] {
-            return false;
-        }
-        index += 1;
-    }
-    true
-}
-
 impl Key {
-    /// The same key, for study files only.
-    pub(super) const fn study_only(self) -> Self {
-        Self { study_only: true, ..self }
-    }
-
-    /// The same key; setting it removes the values of these.
-    pub(super) const fn excludes(self, excludes: &'static [&'static str]) -> Self {
-        Self { excludes, ..self }
-    }
-
     /// The last part of the path.
     pub fn leaf(&self) -> &'static str {
         self.path.rsplit('.').next().unwrap_or(self.path)
@@ -223,6 +133,51 @@ impl Key {
     /// The key as a file has it, as in `"thickness": "25.4 um"`.
     pub fn sample(&self) -> String {
         format!("\"{}\": {}", self.leaf(), self.example)
+    }
+
+    /// Reads the value that a file gives at a path. A value that is not plausible is a warning of the source.
+    pub(crate) fn value(
+        &self,
+        json: &Json,
+        path: &str,
+        source: &Source,
+    ) -> Result<Value, InputError> {
+        let value = self.value_silently(json, path, source)?;
+        if let Some(implausible) = plausible::check(self, json, &value) {
+            source.warn(path, json, implausible);
+        }
+        Ok(value)
+    }
+
+    /// Reads a value that no user wrote, as one between the ends of a range.
+    pub(crate) fn value_silently(
+        &self,
+        json: &Json,
+        path: &str,
+        source: &Source,
+    ) -> Result<Value, InputError> {
+        self.read(json).map_err(|Refusal { problem, allowed }| {
+            source.error(path, json, problem, allowed).with_hint(
+                match plausible::meant(self, json) {
+                    Some(text) => format!("if {text} is meant, write {text:?}"),
+                    None => format!("write it as in {}", self.sample()),
+                },
+            )
+        })
+    }
+
+    /// Reads a finite number: an end of an axis.
+    pub(crate) fn finite(
+        &self,
+        json: &Json,
+        path: &str,
+        source: &Source,
+    ) -> Result<f64, InputError> {
+        match self.value(json, path, source)? {
+            Value::Number(number) if number.is_finite() => Ok(number),
+            Value::Integer(number) => Ok(number as f64),
+            _ => Err(source.error(path, json, "is a word, not a number", self.allowed())),
+        }
     }
 
     /// Reads a value: units to SI, 8.0 as the whole number 8 and 8 as the number 8.0, −0 as 0.
@@ -295,4 +250,56 @@ impl Key {
 
 fn names(words: &'static [Word]) -> impl Iterator<Item = &'static str> {
     words.iter().map(|word| word.name)
+}
+
+impl Quantity {
+    /// Reads a number in SI, a text with a unit, or a word.
+    pub(crate) fn read(&self, json: &Json) -> Result<Value, String> {
+        let number = match json {
+            Json::Integer(number) => *number as f64,
+            Json::Number(number) => *number,
+            Json::Text(text) => {
+                if self.words.iter().any(|(word, _)| word == text) {
+                    return Ok(Value::Text(text.clone()));
+                }
+                units::parse_powers(text, self.dimension.powers())?
+            }
+            other => {
+                return Err(format!("is {}, not {}", other.kind(), self.dimension.name()));
+            }
+        };
+        self.check(number)?;
+        // −0 and 0 are the same input.
+        Ok(Value::Number(if number == 0.0 { 0.0 } else { number }))
+    }
+
+    fn check(&self, number: f64) -> Result<(), String> {
+        let high_enough = if self.above { number > self.min } else { number >= self.min };
+        if high_enough && number <= self.max { Ok(()) } else { Err("is out of range".to_owned()) }
+    }
+
+    /// The number a value stands for: the value itself, or the number of its word.
+    pub fn number(&self, value: &Value) -> Option<f64> {
+        match value {
+            Value::Number(number) => Some(*number),
+            Value::Integer(number) => Some(*number as f64),
+            Value::Text(text) => {
+                self.words.iter().find(|(word, _)| word == text).map(|(_, number)| *number)
+            }
+            Value::Null | Value::Bool(_) => None,
+        }
+    }
+}
+
+/// Reads a whole number from `min` to `max`.
+fn integer(json: &Json, min: i64, max: i64) -> Result<Value, String> {
+    match (json.whole(), json) {
+        (Some(number), _) if (min..=max).contains(&number) => Ok(Value::Integer(number)),
+        (Some(_), _) => Err("is out of range".to_owned()),
+        (None, Json::Number(_)) => Err("is not a whole number".to_owned()),
+        (None, Json::Text(text)) if text.trim().parse::<f64>().is_ok() => {
+            Err("is a text; write the number without quotes".to_owned())
+        }
+        (None, other) => Err(format!("is {}, not a whole number", other.kind())),
+    }
 }

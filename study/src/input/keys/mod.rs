@@ -7,6 +7,7 @@ pub mod listing;
 pub mod numerical;
 mod objects;
 mod quantity;
+mod row;
 mod scene;
 mod study;
 mod study_objects;
@@ -14,14 +15,14 @@ mod table;
 mod words;
 
 pub use crate::platform::nearest::nearest;
-pub use key::{Default, Key, KeyKind, Refusal, named, position};
+pub use key::{Default, Key, KeyKind, Refusal};
 pub use objects::{
     BODY_KEYS, MESH_KEYS, MOVE_KEYS, OUTPUT_KEYS, PLATE_KEYS, ROTATION_KEYS, SCENE_WINDOW_KEYS,
     SPIN_KEYS, START_KEYS, SUPPORT_KEYS,
 };
 pub(crate) use objects::{FLAT, GRAVITY, NEAR};
 pub use quantity::Quantity;
-pub(crate) use quantity::whole;
+pub use row::{named, position};
 pub use study::{KEYS, SECTIONS};
 pub use study_objects::{
     CAPSULE_SUPPORT_KEYS, RANGE_KEYS, SEARCH_KEYS, STRATEGY_KEYS, WINDOW_KEYS,

@@ -4,7 +4,8 @@
 //! a name without a row does not compile ([`super::key::named`]).
 
 use super::key::Default::{Absent, Integer, Number, Required, Word};
-use super::key::{Key, KeyKind, above, from, key, likely, vector};
+use super::key::{Key, KeyKind};
+use super::row::{above, from, key, likely, vector};
 use super::study::{CLOCK, FLOW_RATE, KELVIN, SAMPLE_INTERVAL};
 use super::words::{self, PROFILES, explained, plain, words};
 use crate::input::units::Dimension;

@@ -2,9 +2,8 @@
 
 use std::fmt::Write as _;
 
-use crate::input::json::Json;
-use crate::input::units::{self, Dimension};
-use crate::input::value::{Value, short_number};
+use crate::input::units::Dimension;
+use crate::input::value::short_number;
 
 /// The numbers a quantity may take.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,64 +60,4 @@ impl Quantity {
         }
         text
     }
-
-    /// Reads a number in SI, a text with a unit, or a word.
-    pub(crate) fn read(&self, json: &Json) -> Result<Value, String> {
-        let number = match json {
-            Json::Integer(number) => *number as f64,
-            Json::Number(number) => *number,
-            Json::Text(text) => {
-                if self.words.iter().any(|(word, _)| word == text) {
-                    return Ok(Value::Text(text.clone()));
-                }
-                units::parse_powers(text, self.dimension.powers())?
-            }
-            other => {
-                return Err(format!("is {}, not {}", other.kind(), self.dimension.name()));
-            }
-        };
-        self.check(number)?;
-        // −0 and 0 are the same input.
-        Ok(Value::Number(if number == 0.0 { 0.0 } else { number }))
-    }
-
-    fn check(&self, number: f64) -> Result<(), String> {
-        let high_enough = if self.above { number > self.min } else { number >= self.min };
-        if high_enough && number <= self.max { Ok(()) } else { Err("is out of range".to_owned()) }
-    }
-
-    /// The number a value stands for: the value itself, or the number of its word.
-    pub fn number(&self, value: &Value) -> Option<f64> {
-        match value {
-            Value::Number(number) => Some(*number),
-            Value::Integer(number) => Some(*number as f64),
-            Value::Text(text) => {
-                self.words.iter().find(|(word, _)| word == text).map(|(_, number)| *number)
-            }
-            Value::Null | Value::Bool(_) => None,
-        }
-    }
-}
-
-/// Reads a whole number from `min` to `max`.
-pub(super) fn integer(json: &Json, min: i64, max: i64) -> Result<Value, String> {
-    let number = match json {
-        Json::Integer(number) => Some(*number),
-        Json::Number(number) => whole(*number),
-        Json::Text(text) if text.trim().parse::<f64>().is_ok() => {
-            return Err("is a text; write the number without quotes".to_owned());
-        }
-        other => return Err(format!("is {}, not a whole number", other.kind())),
-    };
-    match number {
-        Some(number) if (min..=max).contains(&number) => Ok(Value::Integer(number)),
-        Some(_) => Err("is out of range".to_owned()),
-        None => Err("is not a whole number".to_owned()),
-    }
-}
-
-/// A float that is a whole number within ±2^53.
-#[expect(clippy::cast_possible_truncation, reason = "checked to be whole and small")]
-pub(crate) fn whole(number: f64) -> Option<i64> {
-    (number.fract() == 0.0 && number.abs() <= 9_007_199_254_740_992.0).then_some(number as i64)
 }

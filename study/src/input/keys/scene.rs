@@ -1,7 +1,8 @@
 //! The keys of a scene file: those it shares with a study, and those of its own sections.
 
 use super::key::Default::{Absent, Integer, Number, Word};
-use super::key::{Key, KeyKind, above, from, key, likely};
+use super::key::{Key, KeyKind};
+use super::row::{above, from, key, likely};
 use super::study::{CLOCK, END_TIME, KELVIN};
 use super::words::{CAPS, SHAPES, plain, words};
 use crate::input::units::Dimension;

@@ -9,8 +9,9 @@ use billow_solver::scene::DEFAULT_CFL;
 use billow_solver::scene::paper::{LOSS_FACTOR, LOSS_FREQUENCY, NUMERICAL_DAMPING};
 
 use super::key::Default::{Absent, Integer, Number, Required, Word};
-use super::key::{Key, KeyKind, above, from, key, likely};
+use super::key::{Key, KeyKind};
 use super::quantity::Quantity;
+use super::row::{above, from, key, likely};
 use super::words::{
     CAPS, CHIRALITIES, FITS, HEAT_TRANSFER_WORDS, INTEGRATORS, MODEL_KINDS, RESIDUAL_GAS, SPECIES,
     plain, words,

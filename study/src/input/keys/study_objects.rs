@@ -1,7 +1,8 @@
 //! The keys of the objects of a study: strategies, inflow windows, supports, ranges, searches.
 
 use super::key::Default::{Absent, Number, Required, Word};
-use super::key::{Key, KeyKind, key};
+use super::key::{Key, KeyKind};
+use super::row::key;
 use super::study::{CLOCK, FLOW_RATE, GAS_MASS, INFLOW_MASS, KELVIN};
 use super::words::{self, SUPPORT_PLACES, explained, words};
 

@@ -15,7 +15,7 @@ use crate::input::json::Json;
 use crate::input::keys::SCENE_WINDOW_KEYS;
 use crate::input::object::Object;
 use crate::input::object::list;
-use crate::input::parts::warn_of_end;
+use crate::input::sections::warn_of_end;
 use crate::input::settings::Settings;
 use crate::input::source::{Source, shown};
 use crate::platform::error::InputError;

@@ -6,7 +6,6 @@ use nalgebra::Vector3;
 
 use super::shape::Shape;
 use crate::input::json::Json;
-use crate::input::keys::whole;
 use crate::input::object::Object;
 use crate::platform::error::InputError;
 
@@ -139,14 +138,8 @@ pub(super) fn triangle(json: &Json, shape: &Shape) -> Result<u32, String> {
     }
 }
 
-/// A whole number.
 fn number(json: &Json) -> Result<i64, String> {
-    let number = match json {
-        Json::Integer(number) => Some(*number),
-        Json::Number(number) => whole(*number),
-        _ => None,
-    };
-    number.ok_or_else(|| format!("{json} is not a whole number"))
+    json.whole().ok_or_else(|| format!("{json} is not a whole number"))
 }
 
 /// Nodes on edges with film on one side only.

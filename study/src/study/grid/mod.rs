@@ -1,15 +1,12 @@
 //! The grid of a study: axes (single or zipped), single points, a filter.
 
-mod axis;
-mod points;
+mod read;
 
 use super::REPLICATES;
 use super::column::Column;
 use super::filter::Filter;
-use super::search::{Search, is_search};
+use super::search::Search;
 use crate::input::json::Json;
-use crate::input::keys::STUDY;
-use crate::input::object::{list, object};
 use crate::input::settings::Settings;
 use crate::input::source::Source;
 use crate::input::value::{Value, json_value};
@@ -74,52 +71,6 @@ impl AxisKind {
 }
 
 impl Grid {
-    /// Reads the grid and the replicates of a study file.
-    pub fn read(tree: &Json, context: Context<'_>) -> Result<Self, InputError> {
-        let limits = context.limits.iter();
-        let limit_names = limits.map(|limit| limit.measure.name().to_owned()).collect();
-        let mut grid = Self { limit_names, ..Self::default() };
-        let members = match tree.get("grid") {
-            Some(json) => object(json, &STUDY, "grid", context.source)?,
-            None => &[],
-        };
-        let mut filter = None;
-        let mut points = None;
-        for (name, value) in members {
-            match name.as_str() {
-                "zip" => {
-                    let allowed = "a list of objects of lists of equal length";
-                    let groups = list(value, "grid.zip", context.source, allowed)?;
-                    for (index, group) in groups.iter().enumerate() {
-                        grid.read_zip(group, &format!("grid.zip[{index}]"), context)?;
-                    }
-                }
-                // Points and filter may name every column, so they are read last.
-                "points" => points = Some(value),
-                "filter" => filter = Some(value),
-                _ => {
-                    let path = format!("grid.{name}");
-                    let column = grid.column(name, &path, value, context)?;
-                    if is_search(value) {
-                        grid.read_search(column, value, &path, context)?;
-                        continue;
-                    }
-                    grid.read_axis(column, value, &path, AxisKind::Values, context)?;
-                }
-            }
-        }
-        grid.read_replicates(tree.get(REPLICATES), context)?;
-        grid.read_meshes(tree.get("solver").and_then(|solver| solver.get("meshes")), context)?;
-        grid.check_search(context.source)?;
-        if let Some(points) = points {
-            grid.read_points(points, context)?;
-        }
-        if let Some(filter) = filter {
-            grid.read_filter(filter, context)?;
-        }
-        Ok(grid)
-    }
-
     /// Refuses an override of a key that the grid varies together with others, or that repeats points: it
     /// has no effect.
     pub fn refuse_varied(&self, source: &Source) -> Result<(), InputError> {

@@ -3,7 +3,7 @@
 use super::{Criterion, Search, Spacing, Tolerance};
 use crate::input::json::Json;
 use crate::input::keys::{Key, KeyKind, SEARCH_KEYS};
-use crate::input::object::{Object, list, read_number};
+use crate::input::object::{Object, list};
 use crate::input::source::Source;
 use crate::input::units::{self, Dimension};
 use crate::job::result_limit::ResultLimit;
@@ -53,7 +53,7 @@ impl Search {
         let [low, high] = items else {
             return refuse("`bisect` is not a list of two values", allowed);
         };
-        let end = |index, json| read_number(key, json, &format!("{ends_path}[{index}]"), source);
+        let end = |index, json| key.finite(json, &format!("{ends_path}[{index}]"), source);
         let ends = [end(0, low)?, end(1, high)?];
         if ends[0] >= ends[1] {
             return refuse("`bisect` does not begin below its end", allowed);

@@ -1,16 +1,19 @@
-//! One axis of a grid: a list of values, a range, or a group of keys that vary together.
+//! Reads the grid: axes (lists of values, ranges, searches, groups of keys that vary together), single points, a
+//! filter.
 
 use super::{Axis, AxisKind, Context, Grid};
+use crate::input::expression;
 use crate::input::json::Json;
-use crate::input::keys::{KEYS, position};
-use crate::input::object::{members, read};
+use crate::input::keys::{self, KEYS, STUDY, position};
+use crate::input::object::{list, members, object};
 use crate::input::source::Source;
 use crate::input::value::Value;
 use crate::job::proportion::Proportion;
 use crate::platform::error::InputError;
 use crate::study::column::{self, Column};
-use crate::study::range;
+use crate::study::filter::Filter;
 use crate::study::search::{Search, is_search};
+use crate::study::{REPLICATES, range};
 
 /// What an axis must look like, for errors.
 const AXIS: &str = "a list of values; {\"from\", \"to\", and \"steps\" or \"step\", \"spacing\"}; or \
@@ -19,6 +22,53 @@ const AXIS: &str = "a list of values; {\"from\", \"to\", and \"steps\" or \"step
 const STRATEGY: usize = position(KEYS, "strategy");
 
 impl Grid {
+    /// Reads the grid and the replicates of a study file.
+    pub fn read(tree: &Json, context: Context<'_>) -> Result<Self, InputError> {
+        let limits = context.limits.iter();
+        let limit_names = limits.map(|limit| limit.measure.name().to_owned()).collect();
+        let mut grid = Self { limit_names, ..Self::default() };
+        let members = match tree.get("grid") {
+            Some(json) => object(json, &STUDY, "grid", context.source)?,
+            None => &[],
+        };
+        let mut filter = None;
+        let mut points = None;
+        for (name, value) in members {
+            match name.as_str() {
+                "zip" => {
+                    let allowed = "a list of objects of lists of equal length";
+                    let groups = list(value, "grid.zip", context.source, allowed)?;
+                    for (index, group) in groups.iter().enumerate() {
+                        grid.read_zip(group, &format!("grid.zip[{index}]"), context)?;
+                    }
+                }
+                // Points and filter may name every column, so they are read last.
+                "points" => points = Some(value),
+                "filter" => filter = Some(value),
+                _ => {
+                    let path = format!("grid.{name}");
+                    let column = grid.column(name, &path, value, context)?;
+                    if is_search(value) {
+                        grid.read_search(column, value, &path, context)?;
+                        continue;
+                    }
+                    grid.read_axis(column, value, &path, AxisKind::Values, context)?;
+                }
+            }
+        }
+        grid.read_replicates(tree.get(REPLICATES), context)?;
+        grid.read_meshes(tree.get("solver").and_then(|solver| solver.get("meshes")), context)?;
+        grid.check_search(context.source)?;
+        if let Some(points) = points {
+            grid.read_points(points, context)?;
+        }
+        if let Some(filter) = filter {
+            grid.read_filter(filter, context)?;
+        }
+        Ok(grid)
+    }
+
+    /// Reads an axis of one column.
     pub(in crate::study) fn read_axis(
         &mut self,
         column: usize,
@@ -34,7 +84,7 @@ impl Grid {
     }
 
     /// Reads a group of keys that vary together.
-    pub(super) fn read_zip(
+    fn read_zip(
         &mut self,
         group: &Json,
         path: &str,
@@ -72,7 +122,7 @@ impl Grid {
     }
 
     /// Reads a search as an axis of this column.
-    pub(super) fn read_search(
+    fn read_search(
         &mut self,
         column: usize,
         json: &Json,
@@ -93,7 +143,7 @@ impl Grid {
     }
 
     /// Refuses a search whose replicates can never decide.
-    pub(super) fn check_search(&self, source: &Source) -> Result<(), InputError> {
+    fn check_search(&self, source: &Source) -> Result<(), InputError> {
         let count = self.replicate_count();
         let decides = Proportion { met: count, of: count }.majority().is_some();
         let Some(search) = self.search.as_ref().filter(|_| count > 1 && !decides) else {
@@ -124,6 +174,69 @@ impl Grid {
         }
         self.columns.push(column);
         Ok(self.columns.len() - 1)
+    }
+
+    /// Reads the single points.
+    fn read_points(&mut self, json: &Json, context: Context<'_>) -> Result<(), InputError> {
+        let Context { settings, source, .. } = context;
+        let allowed = "a list of objects, as in [{\"N\": 6, \"M\": 3}]";
+        for (number, point) in list(json, "grid.points", source, allowed)?.iter().enumerate() {
+            let path = format!("grid.points[{number}]");
+            let mut values: Vec<(usize, Value)> = Vec::new();
+            for (name, json) in members(point, &path, source, allowed)? {
+                let path = format!("{path}.{name}");
+                let found = column::find(name, &path, json, settings, source)?;
+                let value = value(&found, json, &path, context)?;
+                let known = self.columns.iter().position(|known| *known == found);
+                let column = known.unwrap_or_else(|| {
+                    self.columns.push(found);
+                    self.columns.len() - 1
+                });
+                if self.is_replicate(column) {
+                    let problem = "is a replicate, of which every point has all values";
+                    return Err(source.error(&path, json, problem, "keys that are not replicates"));
+                }
+                if values.iter().any(|(other, _)| *other == column) {
+                    let problem = "gives this key twice";
+                    return Err(source.error(&path, json, problem, "each key once"));
+                }
+                values.push((column, value));
+            }
+            self.points.push(values);
+        }
+        Ok(())
+    }
+
+    /// Reads the condition that the points of the product must meet.
+    fn read_filter(&mut self, json: &Json, context: Context<'_>) -> Result<(), InputError> {
+        let Context { settings, source, .. } = context;
+        let Json::Text(text) = json else {
+            let problem = format!("is {}, not a text", json.kind());
+            let allowed = "a condition, as in \"N == 6 and feasible\"";
+            return Err(source.error("grid.filter", json, problem, allowed));
+        };
+        let filter = Filter::read(text, &self.columns, settings);
+        let filter = filter.map_err(|error| {
+            // The problem shows the expression, so the value does not repeat it.
+            let problem = error.to_string();
+            source.error("grid.filter", "", problem, error.allowed)
+        })?;
+        if let Some(replicate) = self.replicate_in(text).filter(|_| self.search.is_some()) {
+            let problem =
+                format!("names {replicate}, a replicate, of which a search needs all values");
+            let allowed = "a condition on the other keys";
+            return Err(source.error("grid.filter", json, problem, allowed));
+        }
+        self.filter = Some(filter);
+        Ok(())
+    }
+
+    /// The first replicate that a condition names.
+    fn replicate_in(&self, condition: &str) -> Option<String> {
+        expression::names(condition).into_iter().find(|name| {
+            let replicate = |column: &usize| keys::find(name) == Some(self.columns[*column].index);
+            self.replicates().any(|axis| axis.columns.iter().any(replicate))
+        })
     }
 
     /// The values of an axis of one column: those of a list or of a range.
@@ -166,14 +279,14 @@ impl Grid {
 }
 
 /// Reads one value of a column.
-pub(super) fn value(
+fn value(
     column: &Column,
     json: &Json,
     path: &str,
     context: Context<'_>,
 ) -> Result<Value, InputError> {
     let Context { settings, source, .. } = context;
-    let value = read(column.key, json, path, source)?;
+    let value = column.key.value(json, path, source)?;
     if let (STRATEGY, Value::Text(name)) = (column.index, &value) {
         settings.check_strategy(name, path, source)?;
     }

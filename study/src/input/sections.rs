@@ -1,0 +1,235 @@
+//! Reads the settings of a file from its tree, and writes them as JSON.
+
+use std::fmt::Write as _;
+
+use serde_json::{Map, json};
+
+use crate::input::json::Json;
+use crate::input::keys::{KEYS, Key, STRATEGY_KEYS, STUDY, Table, WINDOW_KEYS, position};
+use crate::input::object::object;
+use crate::input::plausible::Implausible;
+use crate::input::settings::{Settings, Strategy};
+use crate::input::source::{Source, shown};
+use crate::input::strategy::{self, Row};
+use crate::input::supports;
+use crate::input::value::{Value, brief_number, json_value};
+use crate::platform::error::InputError;
+use crate::platform::nearest::did_you_mean;
+
+impl Settings {
+    /// Reads a study: the value of every key, its strategies and supports.
+    ///
+    /// # Errors
+    /// The first key with a value that it does not allow; a name that is no key.
+    pub fn of_study(tree: &Json, source: &Source) -> Result<Self, InputError> {
+        check_version(tree, source)?;
+        let mut settings = Self::new(&STUDY);
+        settings.read("", tree, source)?;
+        settings.check_stepping(tree, source)?;
+        settings.supports = supports::read(tree.get("supports"), source)?;
+        if let Some(json) = tree.get("strategies") {
+            for (name, value) in object(json, &STUDY, "strategies", source)? {
+                settings.add_strategy(name, strategy::read(name, value, source)?);
+            }
+        }
+        if !settings.strategies.contains_key("direct") {
+            settings.add_strategy("direct", strategy::direct());
+        }
+        settings.check_strategy(settings.strategy_name(), "strategy", source)?;
+        Ok(settings)
+    }
+
+    /// Reads the keys below `prefix`.
+    pub fn read(&mut self, prefix: &str, json: &Json, source: &Source) -> Result<(), InputError> {
+        let table = self.table;
+        for (name, value) in object(json, table, prefix, source)? {
+            let path = if prefix.is_empty() { name.clone() } else { format!("{prefix}.{name}") };
+            let section = table.is_section(&path);
+            let structured = table.structured.iter().any(|(known, _)| *known == path);
+            match table.index(&path) {
+                // A species is a word or a section.
+                Some(index) if section && matches!(value, Json::Object(_)) => {
+                    self.read(&path, value, source)?;
+                    check_species(&path, value, source)?;
+                    self.values[index] = Value::Null;
+                }
+                Some(index) => {
+                    self.values[index] = table.keys[index].value(value, &path, source)?
+                }
+                None if section => self.read(&path, value, source)?,
+                None if structured => {}
+                None => return Err(unknown(table, prefix, &path, name, value, source)),
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses a step that is both adaptive and fixed; a fixed one replaces the default tolerance.
+    fn check_stepping(&mut self, tree: &Json, source: &Source) -> Result<(), InputError> {
+        let stepping = tree.get("solver").and_then(|solver| solver.get("stepping"));
+        if let Some(stepping) = stepping {
+            let given = |key: &str| stepping.get(key).is_some();
+            if given("adaptive") && given("fixed") {
+                return Err(source.error(
+                    "solver.stepping",
+                    stepping,
+                    "gives both adaptive and fixed",
+                    "one of {\"adaptive\": 1e-6}, {\"fixed\": \"10 us\"}",
+                ));
+            }
+            if given("fixed") {
+                let index = const { position(KEYS, "solver.stepping.fixed") };
+                let fixed = self.at(index).clone();
+                self.set(index, fixed);
+            }
+        }
+        Ok(())
+    }
+
+    fn add_strategy(&mut self, name: &str, rows: Vec<Row>) {
+        let windows = (rows.len() - STRATEGY_KEYS.len()) / WINDOW_KEYS.len();
+        let strategy = Strategy { start: self.values.len(), windows };
+        for (path, key, value) in rows {
+            self.rows.push((path, key));
+            self.values.push(value);
+        }
+        self.strategies.insert(name.to_owned(), strategy);
+    }
+
+    /// Settings, strategies and supports, with every value they have.
+    pub fn to_json(&self) -> serde_json::Value {
+        let mut json = json!({});
+        for (key, value) in self.table.keys.iter().zip(&self.values) {
+            if *value == Value::Null {
+                continue;
+            }
+            let member = key.path.split('.').fold(&mut json, |object, part| &mut object[part]);
+            *member = json_value(value);
+        }
+        let members = |keys: &[Key], start: usize| {
+            let given = keys.iter().zip(&self.values[start..]);
+            let given = given.filter(|(_, value)| **value != Value::Null);
+            given
+                .map(|(key, value)| (key.path.to_owned(), json_value(value)))
+                .collect::<Map<_, _>>()
+        };
+        for (name, Strategy { start, windows }) in &self.strategies {
+            let first = start + STRATEGY_KEYS.len();
+            let windows =
+                (0..*windows).map(|n| members(WINDOW_KEYS, first + n * WINDOW_KEYS.len()));
+            let windows: Vec<_> = windows.collect();
+            json["strategies"][name] = members(STRATEGY_KEYS, *start).into();
+            json["strategies"][name]["inflow"] = json!(windows);
+        }
+        let supports = self
+            .supports
+            .iter()
+            .map(|support| json!({"on": supports::place_name(support.on), "fix": support.fix}));
+        json["supports"] = supports.collect::<Vec<_>>().into();
+        json
+    }
+}
+
+/// A gas given by its constants has both.
+fn check_species(path: &str, species: &Json, source: &Source) -> Result<(), InputError> {
+    for key in ["gas_constant", "cp"] {
+        if species.get(key).is_none() {
+            return Err(source.error(
+                &format!("{path}.{key}"),
+                "",
+                "missing: a gas given by its constants needs gas_constant and cp",
+                "a specific heat in J/(kg K)",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a newer format, before any other key is read: they may have another meaning there.
+pub(crate) fn check_version(tree: &Json, source: &Source) -> Result<(), InputError> {
+    match tree.get("version") {
+        Some(Json::Integer(version)) if *version > 1 => Err(source.error(
+            "version",
+            &version.to_string(),
+            "is a newer format than this program reads",
+            "1; or use a newer billow",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Largest number of samples of one run (chosen: more is an error in a unit).
+const MAX_SAMPLES: f64 = 1e6;
+
+/// Number of samples that a run has at least, without a warning. Chosen: fewer cannot show a deployment.
+const MIN_SAMPLES: f64 = 20.0;
+
+/// Refuses a run with more than [`MAX_SAMPLES`] samples, and warns of one with few. Times in s.
+pub(crate) fn check_sample_interval(
+    interval: f64,
+    end_time: f64,
+    source: &Source,
+) -> Result<(), InputError> {
+    if end_time / interval <= MAX_SAMPLES {
+        if end_time < MIN_SAMPLES * interval {
+            let samples = (end_time / interval * (1.0 + 1e-9)).floor() + 1.0;
+            let end_time = shown(end_time);
+            let problem =
+                format!("gives {samples} sample(s) in a run of {end_time} s, too few for times");
+            let next = "check its unit; the default is \"1 ms\"".to_owned();
+            let value = format!("{} s", shown(interval));
+            source.warn_point("outputs.sample_interval", &value, Implausible { problem, next });
+        }
+        return Ok(());
+    }
+    Err(source.error(
+        "outputs.sample_interval",
+        shown(interval),
+        format!("samples a run of {} s more than {MAX_SAMPLES:.0} times", shown(end_time)),
+        format!("at least {} s for this end_time", shown(end_time / MAX_SAMPLES)),
+    ))
+}
+
+/// The error of a name that no key of the table has, with the nearest name that one has.
+fn unknown(
+    table: &Table,
+    prefix: &str,
+    path: &str,
+    name: &str,
+    value: &Json,
+    source: &Source,
+) -> InputError {
+    let known = table.children(prefix);
+    let mut problem = format!("is not a key of {}", table.what);
+    if prefix.is_empty() && name == "maps" {
+        problem.push_str("; a file of maps runs with make stability");
+    } else if let Some(question) = did_you_mean(name, known.iter().copied()) {
+        let _ = write!(problem, "; {question}");
+    } else if let Some(elsewhere) = table.find(name) {
+        let _ = write!(problem, "; did you mean {}?", table.keys[elsewhere].path);
+    }
+    source.error(path, value, problem, known.join(", "))
+}
+
+/// Warns of a window, between these times (s), that starts or ends after the run. `end` is the key that gives
+/// its end, with its value.
+pub(crate) fn warn_of_end(
+    path: &str,
+    [from, to]: [f64; 2],
+    end: (&str, String),
+    end_time: f64,
+    source: &Source,
+) {
+    let part = if from >= end_time {
+        "the window".to_owned()
+    } else if to > end_time {
+        let part = brief_number(100.0 * (to - end_time) / (to - from));
+        format!("the part after it, {part} % of its gas,")
+    } else {
+        return;
+    };
+    let (key, value) = if from >= end_time { ("from", format!("{} s", shown(from))) } else { end };
+    let problem = format!("is after solver.end_time ({} s): {part} is ignored", shown(end_time));
+    let next = "change it, or raise solver.end_time".to_owned();
+    source.warn_point(&format!("{path}.{key}"), &value, Implausible { problem, next });
+}
