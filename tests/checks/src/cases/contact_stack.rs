@@ -27,18 +27,9 @@ fn stack(distance: f64, pressure: f64) -> FilmScene {
     let sheets: Vec<Shell> = (0..LAYERS).map(layer).collect();
     let shell = joined(&sheets);
     let (each, all) = (nodes_of(&shell) / LAYERS, nodes_of(&shell));
-    let press = PlaneBody {
-        normal: Vector3::z(),
-        mass: 0.0,
-        velocity: 0.0,
-        force: -pressure * SIDE * SIDE,
-    };
-    let top = FilmSupport {
-        name: "press".to_owned(),
-        nodes: (all - each..all).collect(),
-        hold: Hold::Body(press),
-        motion: None,
-    };
+    let (normal, force) = (Vector3::z(), -pressure * SIDE * SIDE);
+    let press = PlaneBody { normal, mass: 0.0, velocity: 0.0, force };
+    let top = on_plane((all - each..all).collect(), press);
     let floor = plate(Vector3::zeros(), Vector3::z(), None);
     let mut scene = FilmScene {
         supports: vec![held((0..all).collect(), "xy"), top],
@@ -80,22 +71,16 @@ pub fn stack_of_sheets(rig: &Rig) -> Outcome {
     for distance in numbers("stack/distances") {
         let mut film = rig.start(&stack(distance, pressure))?;
         let record = run_recorded(&mut film, REST, 10, &Phase::default())?;
+        let run = format!("distance {} mm, ", 1e3 * distance);
         let model = film.view().system.contact.as_ref().ok_or("no contact")?;
         for k in 0..LAYERS - 1 {
             let [mean, largest] = between(&film.view(), model, k);
-            let quantity = format!(
-                "distance {} mm, sheets {} and {}: interlayer pressure, Pa",
-                1e3 * distance,
-                k + 1,
-                k + 2
-            );
+            let (low, high) = (k + 1, k + 2);
+            let quantity = format!("{run}sheets {low} and {high}: interlayer pressure, Pa");
             let note = format!("largest at a node {largest:.0} Pa");
             judged.push(Row::new(&quantity, mean, pressure, band).with_note(&note));
         }
-        judged.extend(
-            record
-                .rows(&format!("distance {} mm, ", 1e3 * distance), number("contact/ledger_band")),
-        );
+        judged.extend(record.rows(&run, number("contact/ledger_band")));
     }
     Ok(judged)
 }

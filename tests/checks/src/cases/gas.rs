@@ -52,7 +52,7 @@ impl Body {
 
     /// Advances it to a time, s.
     fn advance(&mut self, target: f64, phase: &Phase) -> Result<Sample> {
-        let phase = Phase { packed: self.packed, ..phase.clone() };
+        let phase = Phase { packed: self.packed, ..*phase };
         self.model.advance(target, &phase).map_err(|failure| stopped(&failure))?;
         Ok(self.model.sample(&phase))
     }
@@ -190,12 +190,7 @@ impl Plate {
         let of_film = 0.5 * shell.reference_area() * Film::PAPER_ELASTIC.area_density();
         let (mass, normal) = (self.mass - of_film, Vector3::z());
         let body = PlaneBody { normal, mass, velocity: self.speed, force: self.force };
-        let plate = FilmSupport {
-            name: "piston".to_owned(),
-            nodes: UPPER.to_vec(),
-            hold: Hold::Body(body),
-            motion: None,
-        };
+        let plate = on_plane(UPPER.to_vec(), body);
         let supports = vec![held(LOWER.to_vec(), "xyz"), held(UPPER.to_vec(), "xy"), plate];
         let supply = self.supply.clone();
         let filling = Filling::Gas { supply, initial_temperature: self.temperature };

@@ -154,11 +154,13 @@ pub fn moving_fold(rig: &Rig, cells: u32, share_floors: &str) -> Outcome {
             let median = if least.is_nan() { least } else { sorted[sorted.len() / 2] };
             let (quantity, floor) =
                 (format!("L/{cells}, l/L {length}: {name}"), floors[index][place]);
-            let mut note = format!("{least:.3} to {most:.3}");
-            if floor < floors[index][0] {
-                note += &format!("; measured limit: {cells} nodes an arm snap");
-            }
-            rows.push(Row::at_least(&quantity, median, floor).with_note(&note));
+            let row = Row::at_least(&quantity, median, floor);
+            let row = row.with_note(&format!("{least:.3} to {most:.3}"));
+            rows.push(if floor < floors[index][0] {
+                row.with_note(&format!("measured limit: {cells} nodes an arm snap"))
+            } else {
+                row
+            });
         }
     }
     let residual = starts.iter().map(|start| start.1).fold(0.0, worse);

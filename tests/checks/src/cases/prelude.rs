@@ -23,7 +23,7 @@ pub use nalgebra::Vector3;
 pub use super::contact_rig::{monitored_contact, plate, run_recorded};
 pub use super::reference::{entry, number, numbers, rows};
 pub use super::rig::{
-    Rig, advance, compliant, equilibrium, held, inflated, mean, nitrogen_filling,
+    Rig, advance, compliant, equilibrium, held, inflated, mean, nitrogen_filling, on_plane,
 };
 pub use super::row::{Row, each, refined, worse};
 pub use super::{Outcome, Result};

@@ -12,7 +12,7 @@ use billow_solver::output::outcome::Failure;
 use billow_solver::platform::fault_injection::Fault;
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
-use billow_solver::scene::film_support::{FilmSupport, Hold};
+use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
 use billow_solver::scene::inflow::Inflow;
 use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
@@ -65,6 +65,11 @@ impl Rig {
 pub fn held(nodes: Vec<u32>, fix: &str) -> FilmSupport {
     let hold = Hold::Components(['x', 'y', 'z'].map(|axis| fix.contains(axis)));
     FilmSupport { name: "held".to_owned(), nodes, hold, motion: None }
+}
+
+/// A rigid plane on these nodes.
+pub fn on_plane(nodes: Vec<u32>, plane: PlaneBody) -> FilmSupport {
+    FilmSupport { name: "plane".to_owned(), nodes, hold: Hold::Body(plane), motion: None }
 }
 
 /// Nitrogen of this mass (kg) and temperature (K).

@@ -138,11 +138,11 @@ pub fn refined<S: AsRef<str>, const N: usize>(
     mut run: impl FnMut(u32) -> Result<[f64; N]>,
 ) -> Outcome {
     let found = [run(meshes[0])?, run(meshes[1])?, run(meshes[2])?];
-    let row = |(index, (name, reference, band)): (usize, &(S, f64, f64))| {
+    let row = |(index, (name, reference, band)): (usize, (S, f64, f64))| {
         let values = found.map(|values| values[index]);
-        Row::refined(name.as_ref(), values, *reference, *band, least)
+        Row::refined(name.as_ref(), values, reference, band, least)
     };
-    Ok(quantities.iter().enumerate().map(row).collect())
+    Ok(quantities.into_iter().enumerate().map(row).collect())
 }
 
 /// The rows of quantities (name, reference) of taut film, of second order: the value of the finest of three meshes with
@@ -154,16 +154,16 @@ pub fn converged<S: AsRef<str>, const N: usize>(
     mut run: impl FnMut(u32) -> Result<[f64; N]>,
 ) -> Outcome {
     let found = [run(meshes[0])?, run(meshes[1])?, run(meshes[2])?];
-    let rows = |(index, (name, reference)): (usize, &(S, f64))| {
+    let rows = |(index, (name, reference)): (usize, (S, f64))| {
         let (name, values) = (name.as_ref(), found.map(|values| values[index]));
         let limit = (4.0 * values[2] - values[1]) / 3.0;
         let finest = format!("{name}, finest mesh");
         [
-            Row::refined(&finest, values, *reference, raw, Some(least)),
-            Row::new(&format!("{name}, Richardson"), limit, *reference, band),
+            Row::refined(&finest, values, reference, raw, Some(least)),
+            Row::new(&format!("{name}, Richardson"), limit, reference, band),
         ]
     };
-    Ok(quantities.iter().enumerate().flat_map(rows).collect())
+    Ok(quantities.into_iter().enumerate().flat_map(rows).collect())
 }
 
 /// The larger of two errors. NaN counts as the largest, unlike in `f64::max`.

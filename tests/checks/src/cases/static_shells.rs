@@ -40,8 +40,7 @@ fn side(along: u32, around: u32, [bottom, top]: [f64; 2], height: f64, crossed: 
 
 /// A rigid plate on these nodes under a force along z.
 fn plate(nodes: Vec<u32>, force: f64) -> FilmSupport {
-    let hold = Hold::Body(PlaneBody { normal: Vector3::z(), mass: 1.0, velocity: 0.0, force });
-    FilmSupport { name: "plate".to_owned(), nodes, hold, motion: None }
+    on_plane(nodes, PlaneBody { normal: Vector3::z(), mass: 1.0, velocity: 0.0, force })
 }
 
 /// Both stretches of a cylinder with closed ends.

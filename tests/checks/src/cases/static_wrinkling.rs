@@ -44,13 +44,9 @@ fn bend(rig: &Rig, rows: u32, requested: f64) -> Result<f64> {
     let wall = nodes_where(&reference, |x| x.x <= 0.0);
     let all = nodes_where(&reference, |_| true);
     let foot = nodes_where(&reference, |x| x.x <= 0.0 && (x.y - BEAM).abs() < 1e-9);
-    let body = Hold::Body(PlaneBody { normal, mass: 1.0, velocity: 0.0, force: pull });
-    let supports = vec![
-        FilmSupport { name: "end".to_owned(), nodes: end, hold: body, motion: None },
-        held(wall.clone(), "x"),
-        held(foot, "y"),
-        held(all, "z"),
-    ];
+    let plane = PlaneBody { normal, mass: 1.0, velocity: 0.0, force: pull };
+    let supports =
+        vec![on_plane(end, plane), held(wall.clone(), "x"), held(foot, "y"), held(all, "z")];
     let state = equilibrium(rig, &FilmScene { supports, ..free_film(shell, film) }, None)?;
     let (mut force, mut moment) = (0.0, 0.0);
     for node in wall {

@@ -188,7 +188,7 @@ impl Map {
     fn problem(&self) -> Option<(String, String)> {
         let (scene, allowed) = (self.scene, self.scene.methods());
         let used = self.expect.iter().flat_map(|rule| &rule.methods).chain(&self.methods);
-        for method in used.filter(|method| !allowed.contains(method)) {
+        if let Some(method) = used.copied().find(|method| !allowed.contains(method)) {
             return Some((
                 format!("{} is no method of the scene {}", method.name(), scene.name),
                 names(&allowed),

@@ -96,13 +96,6 @@ pub fn closed_by_faces() -> String {
 
 /// A sheet under gravity between a floor and a plate that comes down on it.
 pub fn between_moving_plates() -> String {
-    let plate = |name: &str, height: f64, normal: Vector3<f64>, motion| Plate {
-        name: name.to_owned(),
-        point: Vector3::z() * height,
-        normal,
-        motion,
-        removal_time: f64::INFINITY,
-    };
     let down = Motion {
         from: 1e-3,
         to: 6e-3,
@@ -110,10 +103,9 @@ pub fn between_moving_plates() -> String {
         translation: Vector3::new(0.0, 0.0, -8e-3),
         rotation: None,
     };
-    let plates = vec![
-        plate("floor", -5e-3, Vector3::z(), None),
-        plate("press", 6e-3, -Vector3::z(), Some(down)),
-    ];
+    let press = plate(Vector3::z() * 6e-3, -Vector3::z(), None);
+    let floor = plate(Vector3::z() * -5e-3, Vector3::z(), None);
+    let plates = vec![floor, Plate { motion: Some(down), ..press }];
     let contact =
         FilmContact { distance: Some(1e-3), friction: 0.1, plates, ..FilmContact::default() };
     let film = Film { numerical_damping: 0.05, ..Film::PAPER };
@@ -128,15 +120,9 @@ pub fn between_moving_plates() -> String {
 pub fn with_a_free_body() -> String {
     let (lower, upper) = (0..4, 4..8);
     let body = PlaneBody { normal: Vector3::z(), mass: 0.05, velocity: 2.0, force: -5.0 };
-    let piston = FilmSupport {
-        name: "piston".to_owned(),
-        nodes: upper.clone().collect(),
-        hold: Hold::Body(body),
-        motion: None,
-    };
-    let supply = GasSupply { initial_mass: 1e-4, ..nitrogen_supply() };
+    let piston = on_plane(upper.clone().collect(), body);
     of_scene(&FilmScene {
-        filling: Filling::Gas { supply, initial_temperature: 300.0 },
+        filling: nitrogen_filling(1e-4, 300.0),
         supports: vec![held(lower.collect(), "xyz"), held(upper.collect(), "xy"), piston],
         ..scene(gas_column(0.01, 0.1), Film::PAPER_ELASTIC, 5e-3)
     })
