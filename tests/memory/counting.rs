@@ -1,10 +1,15 @@
-//! An allocator that counts the bytes in use, and their peak.
+//! An allocator that counts the bytes in use, their peak, and the allocations of each thread.
 
 use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 static USED: AtomicUsize = AtomicUsize::new(0);
 static PEAK: AtomicUsize = AtomicUsize::new(0);
+
+thread_local! {
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
 
 struct Counting;
 
@@ -14,6 +19,7 @@ fn chunk(size: usize) -> usize {
 }
 
 fn add(size: usize) {
+    let _ = ALLOCATIONS.try_with(|count| count.set(count.get() + 1));
     let used = USED.fetch_add(size, Ordering::Relaxed) + size;
     PEAK.fetch_max(used, Ordering::Relaxed);
 }
@@ -60,4 +66,9 @@ pub fn peak<T>(work: impl FnOnce() -> T) -> (T, usize) {
     PEAK.store(before, Ordering::Relaxed);
     let result = work();
     (result, PEAK.load(Ordering::Relaxed) - before)
+}
+
+/// Allocations of this thread so far.
+pub fn allocations() -> u64 {
+    ALLOCATIONS.with(Cell::get)
 }

@@ -5,6 +5,7 @@
 
 #![expect(clippy::disallowed_methods, reason = "tests read and write files directly")]
 
+#[expect(dead_code, reason = "the number of allocations is for the tests of the solver")]
 mod counting;
 
 use std::fs;

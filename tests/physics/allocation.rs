@@ -1,8 +1,5 @@
 //! No step allocates memory. A counting allocator proves it.
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
-
 use billow_solver::geometry::shapes::{joined, moved, sheet};
 use billow_solver::integrators::FilmSimulation;
 use billow_solver::models::film::{FilmRun, capsule};
@@ -18,46 +15,8 @@ use billow_solver::scene::plate::Plate;
 use billow_solver::scene::timeline::Phase;
 use nalgebra::Vector3;
 
+use crate::counting::allocations;
 use crate::rig::paper_scene;
-
-thread_local! {
-    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-#[expect(
-    unsafe_code,
-    reason = "an allocator is an unsafe trait; this one counts and forwards every call"
-)]
-// SAFETY: every call goes to `System` with the same arguments; the count does not touch the memory.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        let _ = ALLOCATIONS.try_with(|count| count.set(count.get() + 1));
-        // SAFETY: the caller keeps the contract of `alloc`, which is that of `System`.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        let _ = ALLOCATIONS.try_with(|count| count.set(count.get() + 1));
-        // SAFETY: `pointer` comes from `alloc` above, so from `System`, with the same layout; the caller
-        // keeps the contract of `realloc`.
-        unsafe { System.realloc(pointer, layout, size) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: `pointer` comes from `alloc` above, so from `System`, with the same layout.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
-/// Allocations of this thread so far.
-fn allocations() -> u64 {
-    ALLOCATIONS.with(Cell::get)
-}
 
 #[test]
 fn the_counter_counts_allocations() {

@@ -1,5 +1,4 @@
-//! The paper's capsule without and with contact: the same bits on every instruction set, and in a run resumed from any
-//! step.
+//! The paper's capsule without and with contact: the same bits on every instruction set.
 
 use billow_solver::integrators::FilmSimulation;
 use billow_solver::mechanics::forces::membrane::numerical_forces;
@@ -8,7 +7,7 @@ use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::film_scene::FilmContact;
 use billow_solver::scene::monitor_settings::MonitorSettings;
 
-use crate::film_rig::{INFLOW, explicit, resumed, stowed, text};
+use crate::film_rig::{INFLOW, explicit, stowed, text};
 use crate::rig::paper_scene;
 
 /// The paper's capsule, stowed; in contact with friction and full stiffness, and with a monitor that checks every step
@@ -47,31 +46,6 @@ fn every_instruction_set_gives_the_same_bits() {
             assert_eq!(a.smallest_gap().to_bits(), b.smallest_gap().to_bits(), "{name}");
             let audited = [a, b].map(|view| (view.passages(), view.intersections()));
             assert_eq!(audited[0], audited[1], "{name}");
-        }
-    }
-}
-
-#[test]
-fn a_resumed_run_has_the_same_bits_from_any_step() {
-    let cases: [(bool, &[f64], &[u64]); 2] =
-        [(false, &[2e-3, 3e-3], &[0, 1, 7, 40, 100]), (true, &[0.02], &[1, 100, 777, 1300])];
-    for (in_contact, targets, pauses) in cases {
-        let mut whole = film(InstructionSet::detect(), in_contact);
-        for target in targets {
-            whole.advance(*target, &INFLOW).unwrap();
-        }
-        assert!(!in_contact || explicit(&whole).path_length > 0.1);
-        for pause in pauses {
-            let mut film = film(InstructionSet::detect(), in_contact);
-            let mut steps = *pause;
-            for target in targets {
-                while !film.advance_at_most(*target, &INFLOW, &mut steps).unwrap() {
-                    // To text and back, as a checkpoint does.
-                    film = resumed(film);
-                    steps = u64::MAX;
-                }
-            }
-            assert!(text(&film) == text(&whole), "paused after {pause} steps");
         }
     }
 }

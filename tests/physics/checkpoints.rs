@@ -55,12 +55,14 @@ fn bits(deployment: &Deployment) -> String {
     format!("{deployment:?}")
 }
 
-/// The paper's capsule at n 2: packed until 8 ms, inflow windows, frames.
+/// The paper's capsule at n 2: packed until 8 ms, inflow windows, frames, contact with friction.
 fn film() -> Scene {
     let mut scene = paper::capsule(2, 0.03);
     scene.solver.model = ModelKind::Film;
     scene.solver.stepping = Stepping::Stable(DEFAULT_CFL);
     scene.release_time = 0.008;
+    scene.film.compression = 1.0;
+    scene.contact.friction = 0.2;
     scene.outputs.sample_interval = 1e-3;
     scene.outputs.frames = 4;
     scene
@@ -95,6 +97,7 @@ fn a_pause_changes_no_bit_of_any_model() {
 fn a_run_stopped_anywhere_and_resumed_gives_the_same_bits() {
     let scene = film();
     let whole = solve(&scene, &mut Unobserved);
+    assert!(whole.history.column("contact_energy").iter().any(|energy| *energy > 0.0));
     // Packed, within an interval, during inflow, near the end.
     for after in [1, 37, whole.steps / 4, whole.steps / 2 + 3, whole.steps - 60] {
         let mut first = Pausing::new(1, Some(after));

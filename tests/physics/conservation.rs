@@ -93,6 +93,8 @@ proptest! {
     #[test]
     fn energy_and_gas_balance(scene in scenes()) {
         let deployment = run(&scene);
+        // In debug form, every bit of a number.
+        prop_assert_eq!(format!("{:?}", run(&scene)), format!("{deployment:?}"));
         let stopped = match &deployment.stop {
             Stop::Done => false,
             // Under gravity and without gas the top falls through the stowed stack.
@@ -122,16 +124,6 @@ proptest! {
                     .mass_until(*history.column("time").last().unwrap());
             prop_assert!((mass - expected).abs() <= 1e-14 * expected);
         }
-    }
-
-    #[test]
-    fn the_same_scene_gives_the_same_bits(scene in scenes()) {
-        let (first, second) = (run(&scene), run(&scene));
-        for ((_, a), (_, b)) in first.history.iter().zip(second.history.iter()) {
-            let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
-            prop_assert_eq!(bits(a), bits(b));
-        }
-        prop_assert_eq!(first, second);
     }
 
     #[test]

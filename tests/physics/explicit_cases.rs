@@ -1,9 +1,8 @@
-//! Film in motion: moving supports, free fall, a vibrating sheet, order in the step, failures. Momentum and damping are
-//! reference cases of `billow-checks validate`.
+//! Film in motion: moving supports, order in the step, failures. Free flight, drums, momentum and damping are reference
+//! cases of `billow-checks validate`.
 
 use billow_solver::geometry::field::Field;
-use billow_solver::geometry::shapes::{crossed_grid, icosphere, nodes_where, sheet};
-use billow_solver::integrators::FilmSimulation;
+use billow_solver::geometry::shapes::{icosphere, nodes_where, sheet};
 use billow_solver::mechanics::gas::GasState;
 use billow_solver::mechanics::supports::Supports;
 use billow_solver::output::ledger::Ledger;
@@ -14,9 +13,7 @@ use billow_solver::scene::motion::{Motion, Profile};
 use billow_solver::system::PressureLoad;
 use nalgebra::Vector3;
 
-use crate::film_rig::{
-    at_rest, free, largest_residual, ledgers, mapped, moving, nitrogen_gas, orders,
-};
+use crate::film_rig::{at_rest, free, mapped, moving, nitrogen_gas, orders};
 
 #[test]
 fn the_work_of_a_moving_support_balances() {
@@ -47,25 +44,15 @@ fn the_work_of_a_moving_support_balances() {
     film.advance(1e-3, &free()).unwrap();
     film.advance(2e-3, &free()).unwrap();
     let end: Ledger = film.view().ledger();
+    for node in edge(0.0) {
+        let state = film.view().state;
+        assert_eq!(state.positions.get(node as usize), piece.positions[node as usize]);
+        assert_eq!(state.velocities.get(node as usize), Vector3::zeros());
+    }
     let moved = film.view().state.positions.get(right_node) - piece.positions[right_node];
     assert!((moved - Vector3::new(2e-3, 0.5e-3, 1e-3)).norm() < 1e-14);
     assert!(end.support_work > 0.09 && end.strain > 0.09 && end.numerical_dissipation > 0.0);
     assert!(end.defect(&start).abs() < 5e-3 * end.support_work, "{}", end.defect(&start));
-}
-
-#[test]
-fn free_fall_follows_gravity() {
-    let piece = icosphere(0, 0.5);
-    let unloaded = (PressureLoad::Overpressure(0.0), GasState::default());
-    let still = Field::zeros(piece.positions.len());
-    let mut film = moving(&piece, &Film::PAPER, unloaded, still, |system, _| {
-        system.gravity = Vector3::new(0.0, 0.0, -9.806_65);
-    });
-    film.advance(0.1, &free()).unwrap();
-    let drop = film.view().state.positions.z[0] - piece.positions[0].z;
-    assert!((drop / (-0.5 * 9.806_65 * 0.01) - 1.0).abs() < 1e-12, "{drop}");
-    let ledger = film.view().ledger();
-    assert!((ledger.kinetic / ledger.gravity_work - 1.0).abs() < 1e-3, "{ledger:?}");
 }
 
 #[test]
@@ -109,65 +96,6 @@ fn failures_have_their_kind() {
     let mut film = moving(&piece, &Film::PAPER, empty, inward, |_, _| ());
     let failure = film.advance(1.0, &free()).unwrap_err();
     assert_eq!(failure.kind, FailureKind::InvertedVolume, "{failure:?}");
-}
-
-const SIDE: f64 = 0.3;
-
-fn first_mode(x: &Vector3<f64>) -> f64 {
-    let pi = std::f64::consts::PI;
-    libm::sin(pi * x.x / SIDE) * libm::sin(pi * x.y / SIDE)
-}
-
-/// Amplitude of the first mode of a sheet, m.
-fn amplitude(film: &FilmSimulation) -> f64 {
-    let (system, state) = (film.view().system, film.view().state);
-    let (mut sum, mut norm) = (0.0, 0.0);
-    for (mass, x) in system.model.mass.iter().zip(state.positions.iter()) {
-        let shape = first_mode(&x);
-        sum += mass * shape * x.z;
-        norm += mass * shape * shape;
-    }
-    sum / norm
-}
-
-/// A square sheet under tension, held at its edge, that a pressure and gravity push out of its plane.
-#[test]
-fn a_held_sheet_swings_about_its_sag_with_the_period_of_a_membrane() {
-    let (strain, overpressure, gravity) = (1e-3, 1.0, 9.8);
-    let flat = crossed_grid(16, 16, SIDE, SIDE);
-    let edge = nodes_where(&flat, |x| [x.x, x.y].iter().any(|x| *x < 1e-9 || *x > SIDE - 1e-9));
-    let reference: Vec<_> = flat.positions.iter().map(|x| x / (1.0 + strain)).collect();
-    let shell = flat.with_reference(&reference);
-    let material = Film::PAPER_ELASTIC;
-    let still = Field::zeros(shell.positions.len());
-    let load = (PressureLoad::Overpressure(overpressure), GasState::default());
-    let mut film = moving(&shell, &material, load, still, |system, settings| {
-        system.supports.hold(&edge, "xyz");
-        system.gravity = Vector3::new(0.0, 0.0, -gravity);
-        settings.cfl = 0.3;
-    });
-    let pi = std::f64::consts::PI;
-    let stress = material.youngs_modulus * strain / (1.0 - material.poisson_ratio);
-    let frequency = (stress / material.density * 2.0 * pi * pi / (SIDE * SIDE)).sqrt();
-    let acceleration = overpressure / material.area_density() - gravity;
-    let sag = 16.0 / (pi * pi) * acceleration / (frequency * frequency);
-    let period = 2.0 * pi / frequency;
-    let mut series = ledgers(&mut film, 0.5 * period, 20, &free());
-    let lowest = amplitude(&film);
-    assert!((lowest / (2.0 * sag) - 1.0).abs() < 3e-3, "{lowest} {sag}");
-    assert!(series[20].gas_work > 0.0 && series[20].gravity_work < 0.0, "{:?}", series[20]);
-    for sample in 1..=20 {
-        film.advance(period * (0.5 + f64::from(sample) / 40.0), &free()).unwrap();
-        series.push(film.view().ledger());
-    }
-    let back = amplitude(&film);
-    assert!(back.abs() < 1e-3 * sag.abs(), "{back} {sag}");
-    assert!(largest_residual(&series) < 1e-6, "{}", largest_residual(&series));
-    let state = film.view().state;
-    for node in edge {
-        assert_eq!(state.positions.get(node as usize), shell.positions[node as usize]);
-        assert_eq!(state.velocities.get(node as usize), Vector3::zeros());
-    }
 }
 
 /// A sphere of film under gas, released without stress.

@@ -59,26 +59,6 @@ fn static_states_rise_with_pressure() {
     }
 }
 
-#[test]
-#[ignore = "long: the paper's capsule at three steps and two numerical dampings"]
-fn the_ledger_residual_falls_with_the_step() {
-    let scene = paper::capsule(5, 0.3);
-    let residuals: Vec<f64> = [0.9, 0.45, 0.225]
-        .map(|cfl| {
-            let deployment = run(&scene, cfl);
-            assert_eq!(deployment.stop, Stop::Done);
-            assert!(deployment.audit.gas_residual < 1e-10, "{}", deployment.audit.gas_residual);
-            deployment.audit.ledger_residual
-        })
-        .to_vec();
-    assert!(residuals[1] <= 5e-3, "{residuals:?}");
-    assert!(residuals[1] < residuals[0] && residuals[2] < residuals[1], "{residuals:?}");
-    let mut thin = paper::capsule(5, 0.3);
-    thin.film.numerical_damping = 0.05;
-    let deployment = run(&thin, DEFAULT_CFL);
-    assert!(deployment.audit.ledger_residual <= 5e-3, "{:?}", deployment.audit);
-}
-
 /// Everything that can do work or carry energy takes part, on the ground and with a late release.
 #[test]
 fn every_ledger_entry_takes_part_in_the_balance() {

@@ -14,6 +14,9 @@ mod bits;
 mod checkpoints;
 mod closures;
 mod conservation;
+#[path = "../memory/counting.rs"]
+#[expect(dead_code, reason = "the bytes in use are for the tests of the memory of a job")]
+mod counting;
 mod equal_meshes;
 mod explicit_cases;
 mod exports;

@@ -1,7 +1,7 @@
 //! The paper's capsule as a piston: bands from finer models, failures, invalid scenes.
 
 use billow_solver::geometry::fold::{FoldDesign, FoldPattern};
-use billow_solver::models::run::{Observer, Progress};
+use billow_solver::models::run::{Model, Observer, Progress, Unobserved};
 use billow_solver::models::{self, piston::PistonRun};
 use billow_solver::output::measures::Verdict;
 use billow_solver::output::outcome::{FailureKind, Stop};
@@ -17,13 +17,6 @@ use crate::rig::{paper_scene, run};
 
 fn injected() -> Scene {
     paper::capsule(5, 0.5)
-}
-
-fn burst() -> Scene {
-    let mut scene = paper_scene();
-    scene.gas.windows = vec![window(0.0, 0.01, 0.005)];
-    scene.solver.end_time = 1.5;
-    scene
 }
 
 /// Top cap and lateral film by the closed form of a cone with ξ linear in height: ∫ξ² r dz over
@@ -61,20 +54,6 @@ fn deployment_at_5_g_per_s_is_within_the_bands_of_the_piston_model() {
     assert_eq!((m.verdict, m.near_threshold), (Some(Verdict::Deployed), false));
     assert!(deployment.audit.ledger_residual < 1e-6, "{:?}", deployment.audit);
     assert!(deployment.audit.gas_residual < 1e-6, "{:?}", deployment.audit);
-}
-
-#[test]
-fn residual_gas_reaches_the_temperature_of_the_film() {
-    let deployment = run(&burst());
-    assert_eq!(deployment.stop, Stop::Done);
-    let m = &deployment.measures;
-    // 0.05 g at film temperature in V: p = m R T/V.
-    let pressure = 5e-5 * Species::NITROGEN.gas_constant * m.final_temperature.unwrap()
-        / m.final_volume.unwrap();
-    assert!((m.final_pressure.unwrap() / pressure - 1.0).abs() < 1e-12);
-    // h A/(m cv) = 31 1/s: at film temperature long before the end.
-    assert!((m.final_temperature.unwrap() - 293.0).abs() < 1.0, "{:?}", m.final_temperature);
-    assert!(deployment.audit.ledger_residual < 1e-6, "{:?}", deployment.audit);
 }
 
 #[test]
@@ -175,55 +154,52 @@ fn an_observer_can_stop_a_run() {
 
 #[test]
 fn invalid_piston_scenes_name_their_key() {
-    let refused = |change: &dyn Fn(&mut Scene), expected: &str| {
+    let changes: [(fn(&mut Scene), &str); 23] = [
+        (|s| s.supports.clear(), "supports"),
+        (
+            |s| s.supports.push(Support { on: SupportLocation::TopRing, fix: "z".to_owned() }),
+            "supports[1].fix",
+        ),
+        (|s| s.supports[0].fix = "zx".to_owned(), "supports[0].fix"),
+        (|s| s.film.thickness = 0.0, "film.thickness"),
+        (|s| s.film.youngs_modulus = f64::NAN, "film.youngs_modulus"),
+        (|s| s.film.poisson_ratio = 0.6, "film.poisson_ratio"),
+        (|s| s.film.compression = 1.5, "film.compression"),
+        (|s| s.film.numerical_damping = -0.1, "film.numerical_damping"),
+        (|s| s.gas.species.cp = 200.0, "gas.species.cp"),
+        (|s| s.gas.initial_mass = -1.0, "gas.initial_mass"),
+        (|s| s.gas.windows[0].to = -1.0, "gas.windows[0].to"),
+        (|s| s.gas.windows[0].mass_flow_rate = -1.0, "gas.windows[0].rate"),
+        (|s| s.gas.windows[0].temperature = 0.0, "gas.windows[0].temperature"),
+        (
+            |s| s.gas.heat_transfer = HeatTransfer::Coefficient(-1.0),
+            "gas.heat_transfer.coefficient",
+        ),
+        (|s| s.gas.discharge_coefficient = 0.0, "gas.discharge_coefficient"),
+        (|s| s.gravity = f64::INFINITY, "gravity"),
+        (|s| s.release_time = -1.0, "release_time"),
+        (|s| s.solver.end_time = 0.0, "solver.end_time"),
+        (|s| s.solver.step_limit = 0, "solver.step_limit"),
+        (|s| s.solver.stepping = Stepping::Adaptive(1.0), "solver.stepping.adaptive"),
+        (|s| s.solver.stepping = Stepping::Fixed(0.0), "solver.stepping.fixed"),
+        (|s| s.outputs.sample_interval = 1e-12, "outputs.sample_interval"),
+        (|s| s.outputs.thresholds.deployed_volume = 0.0, "outputs.thresholds.deployed_volume"),
+    ];
+    for (change, expected) in changes {
         let mut scene = injected();
         change(&mut scene);
-        match models::solve(
-            InstructionSet::detect(),
-            &scene,
-            &mut billow_solver::models::run::Unobserved,
-        ) {
+        match models::solve(InstructionSet::detect(), &scene, &mut Unobserved) {
             Err(SceneError::Invalid { key, problem }) => {
                 assert_eq!(key, expected, "{problem}");
                 assert!(!problem.is_empty());
             }
             other => panic!("{expected}: {other:?}"),
         }
-    };
-    refused(&|s| s.supports.clear(), "supports");
-    refused(
-        &|s| s.supports.push(Support { on: SupportLocation::TopRing, fix: "z".to_owned() }),
-        "supports[1].fix",
-    );
-    refused(&|s| s.supports[0].fix = "zx".to_owned(), "supports[0].fix");
-    refused(&|s| s.film.thickness = 0.0, "film.thickness");
-    refused(&|s| s.film.youngs_modulus = f64::NAN, "film.youngs_modulus");
-    refused(&|s| s.film.poisson_ratio = 0.6, "film.poisson_ratio");
-    refused(&|s| s.film.compression = 1.5, "film.compression");
-    refused(&|s| s.film.numerical_damping = -0.1, "film.numerical_damping");
-    refused(&|s| s.gas.species.cp = 200.0, "gas.species.cp");
-    refused(&|s| s.gas.initial_mass = -1.0, "gas.initial_mass");
-    refused(&|s| s.gas.windows[0].to = -1.0, "gas.windows[0].to");
-    refused(&|s| s.gas.windows[0].mass_flow_rate = -1.0, "gas.windows[0].rate");
-    refused(&|s| s.gas.windows[0].temperature = 0.0, "gas.windows[0].temperature");
-    refused(
-        &|s| s.gas.heat_transfer = HeatTransfer::Coefficient(-1.0),
-        "gas.heat_transfer.coefficient",
-    );
-    refused(&|s| s.gas.discharge_coefficient = 0.0, "gas.discharge_coefficient");
-    refused(&|s| s.gravity = f64::INFINITY, "gravity");
-    refused(&|s| s.release_time = -1.0, "release_time");
-    refused(&|s| s.solver.end_time = 0.0, "solver.end_time");
-    refused(&|s| s.solver.step_limit = 0, "solver.step_limit");
-    refused(&|s| s.solver.stepping = Stepping::Adaptive(1.0), "solver.stepping.adaptive");
-    refused(&|s| s.solver.stepping = Stepping::Fixed(0.0), "solver.stepping.fixed");
-    refused(&|s| s.outputs.sample_interval = 1e-12, "outputs.sample_interval");
-    refused(&|s| s.outputs.thresholds.deployed_volume = 0.0, "outputs.thresholds.deployed_volume");
+    }
 }
 
 #[test]
 fn the_reference_height_rises_with_pressure() {
-    use billow_solver::models::run::Model;
     let run = PistonRun::from_scene(&paper_scene()).unwrap();
     let reference = |pressure: f64| run.reference(pressure).expect("a capsule has one");
     let height = |pressure: f64| reference(pressure).end.unwrap().height;
@@ -270,5 +246,5 @@ fn a_model_with_equilibria_in_closed_form_has_no_ladder() {
     assert_eq!(models::reference_scene(&scene), None);
     let refused = models::ladder(InstructionSet::detect(), &scene);
     let message = refused.unwrap_err().to_string();
-    assert!(message.contains("solver.model") && message.contains("piston"), "{message}");
+    assert!(message.contains("solver.model: only model `film` has a ladder"), "{message}");
 }

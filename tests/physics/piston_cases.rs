@@ -1,4 +1,4 @@
-//! The order of the piston's integrator, and the film at the end of its stroke. The closed forms are
+//! The film of the piston at the end of its stroke. The closed forms are
 //! reference cases of `billow-checks validate`.
 
 use billow_solver::integrators::dormand_prince::Control;
@@ -6,52 +6,10 @@ use billow_solver::mechanics::gas::Gas;
 use billow_solver::models::piston::{EndFilm, Piston, PistonRun, PistonState};
 use billow_solver::models::run::Model;
 use billow_solver::scene::Film;
-use billow_solver::scene::inflow::Inflow;
 use billow_solver::scene::paper::{BOTTOM_RADIUS, HEIGHT, TOP_RADIUS, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
 
-use crate::rig::{adaptive, fixed, number, tube};
-
-fn injection() -> Phase {
-    let rate = number("injected_piston/rate");
-    let temperature = number("injected_piston/inflow_temperature");
-    Phase {
-        inflow: Inflow { mass_flow_rate: rate, temperature_flow: rate * temperature },
-        ..Phase::default()
-    }
-}
-
-/// The piston in vacuum at 50 ms, started on the closed form at 1 ms.
-fn injected(control: Control) -> PistonRun {
-    let gas = Gas::new(&nitrogen_supply(), 293.0, 1.0);
-    let c = number("injected_piston/C");
-    let (start, end) = (number("injected_piston/start"), number("injected_piston/end"));
-    let gamma = gas.gamma();
-    let temperature =
-        number("injected_piston/inflow_temperature") * 2.0 * gamma / (3.0 * gamma - 1.0);
-    let state = PistonState {
-        height: c * start.powf(1.5),
-        speed: 1.5 * c * start.sqrt(),
-        gas: gas.at_temperature(number("injected_piston/rate") * start, temperature),
-    };
-    // The closed form does not depend on the area.
-    let piston = tube(0.7, 0.0, number("injected_piston/mass"), gas);
-    let mut run = PistonRun::new(piston, start, state, control);
-    run.advance(end, &injection()).unwrap();
-    run
-}
-
-#[test]
-fn fixed_steps_converge_with_order_five() {
-    let exact = injected(adaptive(1e-13)).state().height;
-    let errors: Vec<f64> = [8e-4, 4e-4, 2e-4]
-        .map(|step| (injected(fixed(step)).state().height - exact).abs())
-        .to_vec();
-    for pair in errors.windows(2) {
-        let order = (pair[0] / pair[1]).log2();
-        assert!(order > 4.5, "order {order}, errors {errors:?}");
-    }
-}
+use crate::rig::{adaptive, fixed, tube};
 
 /// The end film of the paper's cone, for a moving mass of 70 g.
 fn end_film() -> EndFilm {

@@ -1,6 +1,4 @@
-//! Pistons without a capsule, and the reference numbers of gas and piston.
-
-use std::sync::LazyLock;
+//! Pistons without a capsule.
 
 use billow_solver::integrators::dormand_prince::Control;
 use billow_solver::mechanics::gas::Gas;
@@ -10,18 +8,6 @@ use billow_solver::models::run::Unobserved;
 use billow_solver::output::outcome::Deployment;
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::{Scene, Stepping, paper};
-use serde_json::Value;
-
-/// The committed reference numbers of gas and piston.
-static REFERENCE: LazyLock<Value> = LazyLock::new(|| {
-    serde_json::from_str(include_str!("../reference/gas.json")).expect("JSON in tests/reference")
-});
-
-/// A reference number by its path, such as `tank_filling/band`.
-pub fn number(path: &str) -> f64 {
-    let pointer = format!("/{path}");
-    REFERENCE.pointer(&pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("no {path}"))
-}
 
 pub fn adaptive(tolerance: f64) -> Control {
     Control { stepping: Stepping::Adaptive(tolerance), step_limit: 10_000_000 }

@@ -1,19 +1,24 @@
 //! The system of film: energies and their derivatives agree, dissipation takes energy, looking changes nothing.
 
+use std::sync::Arc;
+
 use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{icosphere, joined, moved, pseudo_random, sheet};
 use billow_solver::integrators::FilmSimulation;
+use billow_solver::mechanics::gas::GasState;
 use billow_solver::models::film::capsule;
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
 use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::plate::Plate;
 use billow_solver::scene::{Film, GasSupply, HeatTransfer};
-use billow_solver::system::{Evaluation, FilmState, FilmSystem, Workspace};
+use billow_solver::system::{Evaluation, FilmState, FilmSystem, PressureLoad, Workspace};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::film_rig::{INFLOW, free, stowed};
+use crate::closures;
+use crate::film_rig::{INFLOW, free, moving, stowed};
 use crate::rig::paper_scene;
+use crate::spring::Spring;
 
 /// The paper's capsule at n 3 with gas, contact, friction and adhesion, 15 ms after its release.
 fn capsule_in_contact() -> FilmSimulation {
@@ -78,20 +83,44 @@ fn pressed_sheets() -> FilmSimulation {
     film
 }
 
+/// A sphere whose nodes at the far ends of its numbers a stretched spring joins.
+fn sphere_with_a_spring() -> FilmSimulation {
+    let shell = icosphere(1, 0.5);
+    let nodes = [0, shell.positions.len() as u32 - 1];
+    let still = Field::zeros(shell.positions.len());
+    let load = (PressureLoad::Overpressure(100.0), GasState::default());
+    moving(&shell, &Film { compression: 1.0, ..Film::PAPER_ELASTIC }, load, still, |system, _| {
+        let spring = Spring { nodes, stiffness: 4e3, rest_length: 0.1 };
+        system.energy_terms.push(Arc::new(spring));
+    })
+}
+
+/// A tube with a warped rim and closed ends, after 3 ms under gas.
+fn inflated_vessel() -> FilmSimulation {
+    let mut film = closures::with_gas(closures::vessel(0.04, -0.03), Vec::new(), 0.0);
+    film.advance(3e-3, &free()).unwrap();
+    film
+}
+
 fn films() -> Vec<(&'static str, FilmSimulation)> {
     vec![
         ("capsule", capsule_in_contact()),
         ("sphere", sphere(HeatTransfer::Coefficient(3.0))),
         ("isothermal sphere", sphere(HeatTransfer::Isothermal)),
         ("pressed sheets", pressed_sheets()),
+        ("sphere with a spring", sphere_with_a_spring()),
+        ("vessel", inflated_vessel()),
     ]
 }
 
 /// Positions plus `factor` times a pseudo-random displacement of all nodes.
-fn displaced(state: &FilmState, factor: f64) -> (Field, Vec<Vector3<f64>>) {
+fn displaced(system: &FilmSystem, state: &FilmState, factor: f64) -> (Field, Vec<Vector3<f64>>) {
     let directions = pseudo_random(state.positions.len(), 11);
     let moved = state.positions.iter().zip(&directions).map(|(x, u)| x + u * factor);
-    (Field::of(&moved.collect::<Vec<_>>()), directions)
+    let mut positions = Field::of(&moved.collect::<Vec<_>>());
+    // Vertices of the closure follow the film.
+    system.model.closure_nodes.place(&mut positions);
+    (positions, directions)
 }
 
 fn forces(
@@ -117,12 +146,12 @@ fn forces_are_minus_the_slope_of_the_energy() {
         let (system, state) = (now.system, now.state);
         let mut workspace = Workspace::new(system, state);
         let mut at = |factor: f64| {
-            let (positions, _) = displaced(state, factor);
+            let (positions, _) = displaced(system, state, factor);
             system.evaluate(state, &positions, state.time, &mut workspace).energy()
         };
         let small = 1e-8;
         let slope = (at(small) - at(-small)) / (2.0 * small);
-        let (positions, directions) = displaced(state, 0.0);
+        let (positions, directions) = displaced(system, state, 0.0);
         let evaluation = system.evaluate(state, &positions, state.time, &mut workspace);
         let forces = forces(system, &workspace, &evaluation);
         let power: f64 = forces.iter().zip(&directions).map(|(f, u)| f.dot(u)).sum();
@@ -143,12 +172,12 @@ fn the_stiffness_is_minus_the_slope_of_the_forces() {
         let mut workspace = Workspace::new(system, state);
         let small = 1e-9;
         let mut at = |factor: f64| {
-            let (positions, _) = displaced(state, factor);
+            let (positions, _) = displaced(system, state, factor);
             let evaluation = system.evaluate(state, &positions, state.time, &mut workspace);
             forces(system, &workspace, &evaluation)
         };
         let (after, before) = (at(small), at(-small));
-        let (positions, directions) = displaced(state, 0.0);
+        let (positions, directions) = displaced(system, state, 0.0);
         let evaluation = system.evaluate(state, &positions, state.time, &mut workspace);
         let mut product = vec![Vector3::zeros(); directions.len()];
         let at_now = (&positions, state.time);
@@ -183,9 +212,11 @@ fn looking_at_film_changes_nothing() {
     let (system, state) = (film.view().system, film.view().state);
     let before = state.clone();
     let mut workspace = Workspace::new(system, state);
-    let first = system.evaluate(state, &displaced(state, 1e-5).0, state.time, &mut workspace);
-    let _ = system.evaluate(state, &displaced(state, -2e-5).0, state.time, &mut workspace);
-    let again = system.evaluate(state, &displaced(state, 1e-5).0, state.time, &mut workspace);
+    let first =
+        system.evaluate(state, &displaced(system, state, 1e-5).0, state.time, &mut workspace);
+    let _ = system.evaluate(state, &displaced(system, state, -2e-5).0, state.time, &mut workspace);
+    let again =
+        system.evaluate(state, &displaced(system, state, 1e-5).0, state.time, &mut workspace);
     assert_eq!(first, again);
     assert_eq!(*state, before);
 }

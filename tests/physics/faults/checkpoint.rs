@@ -7,10 +7,6 @@ use billow_solver::scene::IntegratorKind;
 
 use super::scenes;
 
-/// The row of the guide.
-pub const ROW: [&str; 5] =
-    ["a byte of a checkpoint flipped", "bag", "checksum", "checksum", "checksum"];
-
 /// Where the byte is: after the first of these texts.
 const PLACES: [&str; 6] = [
     "\"format\":\"",
