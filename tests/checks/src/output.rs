@@ -1,13 +1,38 @@
-//! What the checks share beside the printer of billow: entries chosen by name, pictures in a folder.
+//! What the checks share beside the printer of billow: options, entries chosen by name, pictures in a folder.
 
 use std::io::Write;
 use std::path::Path;
 
-use billow_study::cli::output_error;
+use billow_study::cli::options::{OutputOptions, QuietOption};
 use billow_study::cli::picture::{self, Picture};
+use billow_study::cli::{Format, output_error};
 use billow_study::platform::error::{Error, Result};
 use billow_study::platform::files::{Disk, Files, disk_error};
 use billow_study::platform::nearest::did_you_mean;
+use billow_study::platform::output;
+
+/// The options of every command.
+#[derive(Debug, clap::Args)]
+pub struct Options {
+    #[command(flatten)]
+    output: OutputOptions,
+    #[command(flatten)]
+    quiet: QuietOption,
+}
+
+impl Options {
+    /// The format of the output.
+    pub fn format(&self) -> Format {
+        self.output.format()
+    }
+
+    /// Says something on stderr, unless that is not wanted.
+    pub fn note(&self, text: &str) {
+        if !self.quiet.quiet {
+            output::message(format_args!("billow-checks: {text}"));
+        }
+    }
+}
 
 /// The entries of a table that an option names, in the order of the table; all without names.
 pub fn chosen<'a, T>(

@@ -11,7 +11,6 @@ use std::io::Write;
 use std::path::Path;
 
 use billow_solver::platform::simd::InstructionSet;
-use billow_study::cli::options::{OutputOptions, QuietOption};
 use billow_study::cli::print::print_rows;
 use billow_study::cli::{Format, instruction_set, output_error};
 use billow_study::input::value::{Value, brief_number};
@@ -22,6 +21,7 @@ use billow_study::platform::provenance;
 mod capsule;
 mod stages;
 
+use crate::output::Options;
 use capsule::{Capsule, Progress};
 
 /// A row: names and values.
@@ -61,21 +61,12 @@ pub struct Args {
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     #[command(flatten)]
-    output: OutputOptions,
-    #[command(flatten)]
-    quiet: QuietOption,
+    options: Options,
 }
 
 impl Args {
     fn has(&self, part: Part) -> bool {
         self.only.is_empty() || self.only.contains(&part)
-    }
-
-    /// Says on stderr what is measured next.
-    fn note(&self, next: &str) {
-        if !self.quiet.quiet {
-            eprintln!("billow-checks: {next}");
-        }
     }
 }
 
@@ -87,7 +78,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         measure(args, &Capsule::new(n, &args.set, set)?, &mut stages, &mut runs)?;
     }
     let parts = [("machine", vec![machine(set)]), ("stages", stages), ("runs", runs)];
-    print(&parts, args.output.format(), out)
+    print(&parts, args.options.format(), out)
 }
 
 /// What the machine and the program are.
@@ -115,7 +106,7 @@ fn measure(
 ) -> Result<()> {
     let n = capsule.subdivisions;
     let end = args.end_time.unwrap_or(if n <= 8 { 0.3 } else { 0.1 });
-    args.note(&format!("run, n {n}, {end} s"));
+    args.options.note(&format!("run, n {n}, {end} s"));
     let mut progress = Progress::of(capsule)?;
     let mut states = vec![("stowed", progress.film.clone())];
     let mut times: Vec<f64> =
@@ -132,7 +123,7 @@ fn measure(
     }
     states.push(("end", progress.film));
     for (name, film) in states.iter().filter(|_| args.has(Part::Stages)) {
-        args.note(&format!("stages, n {n}, {name}"));
+        args.options.note(&format!("stages, n {n}, {name}"));
         stages.push(stages::measure(capsule, name, film)?);
     }
     Ok(())

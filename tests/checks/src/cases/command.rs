@@ -3,14 +3,14 @@
 use std::io::Write;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use billow_study::cli::options::{OutputOptions, QuietOption, ThreadsOption};
+use billow_study::cli::Format;
+use billow_study::cli::options::ThreadsOption;
 use billow_study::cli::print::print_rows;
-use billow_study::cli::{Format, instruction_set};
 use billow_study::input::value::Value;
 use billow_study::platform::error::{Error, Result};
 
 use super::{CASES, Case, Judged, Rig, Tier, run_all};
-use crate::output::chosen;
+use crate::output::{Options, chosen};
 
 /// Arguments of `billow-checks validate`.
 #[derive(Debug, clap::Args)]
@@ -27,42 +27,35 @@ pub struct Args {
     #[command(flatten)]
     threads: ThreadsOption,
     #[command(flatten)]
-    output: OutputOptions,
-    #[command(flatten)]
-    quiet: QuietOption,
+    options: Options,
 }
 
 /// Runs `billow-checks validate`.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let chosen = chosen("--case", &args.cases, CASES, |case| case.name)?;
     if args.list {
-        return list(&chosen, args.output.format(), out);
+        return list(&chosen, args.options.format(), out);
     }
-    let note = |text: String| {
-        if !args.quiet.quiet {
-            eprintln!("billow-checks: {text}");
-        }
-    };
     let skip = |case: &&Case| args.quick && case.tier == Tier::Long;
     let (skipped, cases): (Vec<&Case>, Vec<&Case>) = chosen.into_iter().partition(skip);
-    let rig = Rig { instruction_set: instruction_set::selected()?, ..Rig::default() };
+    let rig = Rig::selected()?;
     let pool = args.threads.pool()?;
     if !skipped.is_empty() {
         let names: Vec<&str> = skipped.iter().map(|case| case.name).collect();
-        note(format!("skipped by --quick: {}", names.join(", ")));
+        args.options.note(&format!("skipped by --quick: {}", names.join(", ")));
     }
     let ended = AtomicUsize::new(0);
     let judged = run_all(&pool, &cases, &rig, &|judged| {
         let number = ended.fetch_add(1, Ordering::Relaxed) + 1;
         let verdict = if judged.pass() { "in tolerance" } else { "OUT OF TOLERANCE" };
-        note(format!(
+        args.options.note(&format!(
             "{number}/{} {}: {verdict}, {:.1} s",
             cases.len(),
             judged.name,
             judged.seconds
         ));
     });
-    print(&judged, args.output.format(), out)?;
+    print(&judged, args.options.format(), out)?;
     verdict(&judged)
 }
 

@@ -18,6 +18,7 @@ use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply};
 use billow_solver::statics::{self, StaticSolution};
+use billow_study::cli::instruction_set;
 use nalgebra::Vector3;
 
 use super::Result;
@@ -37,6 +38,11 @@ impl Default for Rig {
 }
 
 impl Rig {
+    /// The rig with the instruction set of `BILLOW_SIMD`.
+    pub fn selected() -> billow_study::platform::error::Result<Self> {
+        Ok(Self { fault: None, instruction_set: instruction_set::selected()? })
+    }
+
     /// The film of a scene at time 0.
     pub fn start(&self, scene: &FilmScene) -> Result<FilmSimulation> {
         let film = capsule::start(&self.on_instruction_set(scene), &[]);

@@ -5,19 +5,21 @@ use std::path::{Path, PathBuf};
 
 use billow_study::accuracy::{MeshErrors, PROMISED};
 use billow_study::cli::Format;
-use billow_study::cli::options::{OutputOptions, QuietOption, ResultsOption};
+use billow_study::cli::options::ResultsOption;
 use billow_study::cli::print::{fraction, print_rows};
 use billow_study::cli::results::{self, StudyArgs};
 use billow_study::input::value::Value;
 use billow_study::job::row::ColumnId;
 use billow_study::platform::error::{Error, Result};
 use billow_study::platform::files::{Disk, disk_error, write_output};
+use billow_study::platform::output;
 
 use super::calibrate::calibrate;
 use super::check::{MeshCheck, check};
 use super::fit::{ORDERS, fit};
 use super::limit::levels;
 use super::runs::{SceneRuns, by_scene};
+use crate::output::Options;
 
 /// Measures that are looked at beside the promised ones.
 const MEASURES: [ColumnId; 8] = [
@@ -48,9 +50,7 @@ pub struct Args {
     #[arg(long, conflicts_with = "table")]
     check: bool,
     #[command(flatten)]
-    output: OutputOptions,
-    #[command(flatten)]
-    quiet: QuietOption,
+    options: Options,
 }
 
 /// Runs `billow-checks converge`: one row per scene and measure.
@@ -78,16 +78,16 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         let value = names.join(", ");
         return Err(Error::invalid_option("study", &value, "has no series of meshes", allowed, ""));
     }
-    let format = args.output.format();
+    let format = args.options.format();
     print_rows(&COLUMNS, &rows, format, out)?;
-    if format == Format::Table && !args.quiet.quiet {
-        eprintln!(
+    if format == Format::Table {
+        args.options.note(&format!(
             "{} scenes; limit: of the fit f0 + a h^order, h = 1/n, order from {} to {}; change: limit over the finest \
              value, minus 1; uncertainty: 95 %, of the limit",
             scenes.len(),
             ORDERS[0],
             ORDERS[1]
-        );
+        ));
     }
     match &args.table {
         Some(path) => write_table(&scenes, names, args.reference, path),
@@ -112,7 +112,7 @@ fn print_checks(
         let problem = "has nothing to check the table of mesh errors with";
         return Err(Error::invalid_option("study", &names.join(", "), problem, allowed, ""));
     }
-    let format = args.output.format();
+    let format = args.options.format();
     let row = |check: &MeshCheck| {
         vec![
             check.subdivisions.into(),
@@ -125,12 +125,12 @@ fn print_checks(
     };
     let columns = ["subdivisions", "measure", "kept", "of", "median_error", "median_of_table"];
     print_rows(&columns, &checks.iter().map(row).collect::<Vec<_>>(), format, out)?;
-    if format == Format::Table && !args.quiet.quiet {
-        eprintln!(
+    if format == Format::Table {
+        args.options.note(&format!(
             "kept: runs whose difference from n {} is within the error of the table; medians: of these differences, and of \
              these errors, relative",
             table.reference
-        );
+        ));
     }
     Ok(())
 }
@@ -194,6 +194,10 @@ fn write_table(
     text.push('\n');
     write_output(&Disk, path, text.as_bytes()).map_err(|error| disk_error(path, &error))?;
     let scenes = table.errors.all().iter().map(|entry| entry.scenes).max().unwrap_or(0);
-    eprintln!("{}: {} errors, of up to {scenes} scenes", path.display(), table.errors.all().len());
+    output::message(format_args!(
+        "{}: {} errors, of up to {scenes} scenes",
+        path.display(),
+        table.errors.all().len()
+    ));
     Ok(())
 }

@@ -11,14 +11,13 @@ use std::path::PathBuf;
 
 use billow_study::analysis::work_precision::{Cost, Diagram, Member, SceneRuns, label};
 use billow_study::chart::work_precision as pictures;
-use billow_study::cli::options::{OutputOptions, QuietOption};
+use billow_study::cli::Format;
 use billow_study::cli::print::print_rows;
-use billow_study::cli::{Format, instruction_set};
 use billow_study::input::value::Value;
 use billow_study::platform::error::{Error, Result};
 
 use crate::cases::Rig;
-use crate::output::{chosen, draw};
+use crate::output::{Options, chosen, draw};
 
 mod airbag;
 mod meter;
@@ -61,25 +60,21 @@ pub struct Args {
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     scenes: Vec<String>,
     #[command(flatten)]
-    output: OutputOptions,
-    #[command(flatten)]
-    quiet: QuietOption,
+    options: Options,
 }
 
 /// Runs `billow-checks pareto`: runs the scenes on one thread, prints every configuration and draws the pictures over
 /// element-steps and over seconds.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let rig = Rig { instruction_set: instruction_set::selected()?, ..Rig::default() };
+    let rig = Rig::selected()?;
     let mut diagrams = Vec::new();
     for (name, body) in chosen("--scenes", &args.scenes, &SCENES, |(name, _)| name)? {
-        if !args.quiet.quiet {
-            eprintln!("billow-checks: runs the scene {name}");
-        }
+        args.options.note(&format!("runs the scene {name}"));
         let runs =
             body(&rig).map_err(|problem| Error::JobsFailed(format!("scene {name}: {problem}")))?;
         diagrams.push(Diagram::of(runs));
     }
-    let format = args.output.format();
+    let format = args.options.format();
     print_rows(&COLUMNS, &rows(&diagrams), format, out)?;
     let mut drawn = Vec::new();
     for (cost, ending) in [(Cost::Work, ""), (Cost::Seconds, "_seconds")] {

@@ -3,9 +3,9 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use billow_study::cli::options::{OutputOptions, QuietOption, ThreadsOption};
+use billow_study::cli::options::ThreadsOption;
 use billow_study::cli::print::{count, print_rows};
-use billow_study::cli::{Format, instruction_set, output_error};
+use billow_study::cli::{Format, output_error};
 use billow_study::input::value::{Value, brief_number};
 use billow_study::platform::error::{Error, Result};
 use billow_study::platform::files::{Disk, Files, disk_error};
@@ -15,7 +15,7 @@ use super::file::{self, Map};
 use super::map::{Border, Cells, FinishedMap, Placed};
 use super::picture;
 use crate::cases::Rig;
-use crate::output::{chosen, draw};
+use crate::output::{Options, chosen, draw};
 
 /// Columns of the table.
 const COLUMNS: [&str; 11] = [
@@ -50,44 +50,42 @@ pub struct Args {
     #[command(flatten)]
     threads: ThreadsOption,
     #[command(flatten)]
-    output: OutputOptions,
-    #[command(flatten)]
-    quiet: QuietOption,
+    options: Options,
 }
 
 /// Runs `billow-checks stability`: prints the numbers of cells by method and status, the borders and what is not as
 /// expected; as csv or json every cell.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let note = |text: &str| {
-        if !args.quiet.quiet {
-            eprintln!("billow-checks: {text}");
-        }
-    };
     let all = file::read(&args.maps_file)?;
     let maps = chosen("--maps", &args.maps, &all, |map| &map.name)?;
     let usual = || Path::new("results").join(args.maps_file.file_stem().unwrap_or_default());
     let folder = args.results.clone().unwrap_or_else(usual);
     Disk.create_folder(&folder).map_err(|error| disk_error(&folder, &error))?;
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
-    let rig = Rig { instruction_set: instruction_set::selected()?, ..Rig::default() };
+    let rig = Rig::selected()?;
     let (cells, damaged) = Cells::open(rig, folder.join("cells.json"), &stop);
     if damaged {
         let folder = folder.display();
-        note(&format!("the stored cells of {folder} are of another version or damaged"));
+        args.options
+            .note(&format!("the stored cells of {folder} are of another version or damaged"));
     }
     let pool = args.threads.pool()?;
     let mut finished = Vec::new();
     for map in maps {
         let before = cells.len();
         finished.push(pool.install(|| cells.run(map))?);
-        note(&format!("map {}: {} run", map.name, count(cells.len() - before, "cell")));
+        args.options.note(&format!(
+            "map {}: {} run",
+            map.name,
+            count(cells.len() - before, "cell")
+        ));
     }
     report(args, &finished, &folder, out)
 }
 
 /// Prints cells and borders, draws the pictures, and reports what is not as expected.
 fn report(args: &Args, maps: &[FinishedMap<'_>], folder: &Path, out: &mut dyn Write) -> Result<()> {
-    let format = args.output.format();
+    let format = args.options.format();
     let (mut rows, mut lines, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
     for finished in maps {
         let map = finished.map;
