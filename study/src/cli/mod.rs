@@ -20,7 +20,7 @@ mod answer;
 mod best;
 mod borders;
 mod changes;
-mod chart;
+pub mod chart;
 mod compare;
 mod completions;
 mod doctor;

@@ -22,7 +22,7 @@ use crate::store::results::Results;
 use crate::store::table::{Table, select};
 use crate::study::Study;
 
-mod work_precision;
+pub mod work_precision;
 
 /// Arguments of `billow chart`.
 #[derive(Debug, clap::Args)]

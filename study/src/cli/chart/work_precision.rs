@@ -105,7 +105,10 @@ fn of_history(history: &StoredHistory) -> Histories {
 }
 
 /// Prints the configurations by scene, quantity and cost: of a table those on the front, with two digits.
-fn print_front(
+///
+/// # Errors
+/// When the output cannot be written.
+pub fn print_front(
     diagrams: &[Diagram],
     cost: Cost,
     format: Format,

@@ -9,11 +9,10 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use billow_study::analysis::work_precision::{Cost, Diagram, Member, SceneRuns, label};
+use billow_study::analysis::work_precision::{Cost, Diagram, SceneRuns};
 use billow_study::chart::work_precision as pictures;
 use billow_study::cli::Format;
-use billow_study::cli::print::print_rows;
-use billow_study::input::value::Value;
+use billow_study::cli::chart::work_precision::print_front;
 use billow_study::platform::error::{Error, Result};
 
 use crate::cases::Rig;
@@ -35,21 +34,6 @@ const SCENES: [Scene; 4] = [
     ("stretched_disc", vibrations::stretched_disc),
 ];
 
-/// Columns of the output.
-const COLUMNS: [&str; 11] = [
-    "scene",
-    "quantity",
-    "configuration",
-    "front",
-    "status",
-    "error",
-    "order",
-    "element_steps",
-    "seconds",
-    "value",
-    "reference",
-];
-
 /// Arguments of `billow-checks pareto`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -63,8 +47,8 @@ pub struct Args {
     options: Options,
 }
 
-/// Runs `billow-checks pareto`: runs the scenes on one thread, prints every configuration and draws the pictures over
-/// element-steps and over seconds.
+/// Runs `billow-checks pareto`: runs the scenes on one thread, prints the front, in CSV and JSON every configuration,
+/// and draws the pictures over element-steps and over seconds.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let rig = Rig::selected()?;
     let mut diagrams = Vec::new();
@@ -75,7 +59,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         diagrams.push(Diagram::of(runs));
     }
     let format = args.options.format();
-    print_rows(&COLUMNS, &rows(&diagrams), format, out)?;
+    print_front(&diagrams, Cost::Work, format, out)?;
     let mut drawn = Vec::new();
     for (cost, ending) in [(Cost::Work, ""), (Cost::Seconds, "_seconds")] {
         drawn.push((format!("pareto_exact{ending}"), pictures::overview(&diagrams, cost)));
@@ -84,33 +68,4 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         }));
     }
     draw(&args.out, drawn, format == Format::Table, out)
-}
-
-/// One row per configuration, by scene, quantity and element-steps.
-fn rows(diagrams: &[Diagram]) -> Vec<Vec<Value>> {
-    let mut rows = Vec::new();
-    for diagram in diagrams {
-        for errors in &diagram.quantities {
-            let mut members: Vec<_> = errors.points.iter().zip(&diagram.members).collect();
-            members.sort_by(|(_, a), (_, b)| a.work().total_cmp(&b.work()));
-            let exact = errors.reference.as_ref().and_then(|reference| reference.value);
-            rows.extend(members.into_iter().map(|(point, member): (_, &Member)| {
-                let error = point.filter(|point| !point.is_reference);
-                vec![
-                    diagram.name.as_str().into(),
-                    errors.quantity.name.as_str().into(),
-                    label(&member.configuration, &[]).into(),
-                    point.is_some_and(|point| point.on_front(Cost::Work)).into(),
-                    member.ending.name().into(),
-                    error.map(|point| point.error.median).into(),
-                    point.and_then(|point| point.order).into(),
-                    member.work().into(),
-                    member.seconds.into(),
-                    point.and_then(|point| point.value).into(),
-                    exact.into(),
-                ]
-            }));
-        }
-    }
-    rows
 }
