@@ -1,21 +1,11 @@
 //! No step allocates memory. A counting allocator proves it.
 
 use billow_solver::geometry::shapes::{joined, moved, sheet};
-use billow_solver::integrators::FilmSimulation;
-use billow_solver::models::film::{FilmRun, capsule};
-use billow_solver::models::run::Model;
-use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::DEFAULT_CFL;
-use billow_solver::scene::Film;
-use billow_solver::scene::film_scene::{FilmContact, FilmScene};
-use billow_solver::scene::inflow::Inflow;
-use billow_solver::scene::monitor_settings::MonitorSettings;
+use billow_solver::models::film::capsule;
 use billow_solver::scene::paper::free_film;
-use billow_solver::scene::plate::Plate;
-use billow_solver::scene::timeline::Phase;
-use nalgebra::Vector3;
 
 use crate::counting::allocations;
+use crate::prelude::*;
 use crate::rig::paper_scene;
 
 #[test]

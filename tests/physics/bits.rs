@@ -1,13 +1,10 @@
 //! The paper's capsule without and with contact: the same bits on every instruction set.
 
-use billow_solver::integrators::FilmSimulation;
 use billow_solver::mechanics::forces::membrane::numerical_forces;
 use billow_solver::models::film::capsule;
-use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::film_scene::FilmContact;
-use billow_solver::scene::monitor_settings::MonitorSettings;
 
 use crate::film_rig::{INFLOW, explicit, stowed, text};
+use crate::prelude::*;
 use crate::rig::paper_scene;
 
 /// The paper's capsule, stowed; in contact with friction and full stiffness, and with a monitor that checks every step

@@ -1,17 +1,10 @@
 //! Pauses and checkpoints of whole runs: the same bits as without them, at any step.
 
-use billow_solver::collision::contact::BroadPhaseFault;
-use billow_solver::integrators::{FilmSimulation, StoredFilm};
-use billow_solver::models::film::FilmRun;
-use billow_solver::models::run::{Answer, Observer, Pause, Progress, Run, Unobserved, run};
-use billow_solver::models::{self, ResumeError, Stored};
-use billow_solver::output::checkpoint::{Checkpoint, CheckpointError};
-use billow_solver::output::outcome::{Deployment, FailureKind, Stop};
-use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::DEFAULT_CFL;
-use billow_solver::scene::film_scene::FilmContact;
-use billow_solver::scene::timeline::Timeline;
-use billow_solver::scene::{ModelKind, Scene, Stepping, paper};
+use billow_solver::models::run::run;
+use billow_solver::models::{self, ResumeError};
+use billow_solver::scene::paper;
+
+use crate::prelude::*;
 
 /// Pauses every few steps; stores the state after some of them and ends.
 struct Pausing {

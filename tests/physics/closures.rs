@@ -2,21 +2,14 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{disc, moved, ring_nodes, tube};
-use billow_solver::geometry::shell::Shell;
-use billow_solver::integrators::FilmSimulation;
-use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::mechanics::forces::pressure::volume;
-use billow_solver::mechanics::supports::Supports;
 use billow_solver::models::film::capsule;
-use billow_solver::scene::film_scene::{Filling, FilmScene};
-use billow_solver::scene::film_support::{FilmSupport, Hold};
 use billow_solver::scene::paper::{free_film, nitrogen_supply};
-use billow_solver::scene::timeline::Phase;
-use billow_solver::scene::{Film, GasSupply};
 use billow_solver::statics::solve_unobserved;
-use nalgebra::{Matrix3, Vector3};
+
+use crate::film_rig::support;
+use crate::prelude::*;
 
 const RADIUS: f64 = 0.25;
 const LENGTH: f64 = 0.4;
@@ -71,13 +64,7 @@ pub fn vessel(warp: f64, lift: f64) -> Shell {
 
 /// The ring in the middle is held.
 fn middle() -> FilmSupport {
-    let nodes = ring_nodes(ALONG / 2, AROUND);
-    FilmSupport {
-        name: "middle".to_owned(),
-        nodes,
-        hold: Hold::Components([true; 3]),
-        motion: None,
-    }
+    support("middle", ring_nodes(ALONG / 2, AROUND), Hold::Components([true; 3]))
 }
 
 /// Vessels: plane ends, a dome, warped rims, both.
@@ -185,8 +172,7 @@ fn symmetry_planes_take_the_pressure_on_their_fans() {
         let rim = shell.boundary().concat();
         let mut nodes = rim.clone();
         nodes.sort_unstable();
-        let hold = Hold::Plane(Vector3::z());
-        let plane = FilmSupport { name: "plane".to_owned(), nodes, hold, motion: None };
+        let plane = support("plane", nodes, Hold::Plane(Vector3::z()));
         let supports = Supports::new(std::slice::from_ref(&plane), &Field::of(&shell.positions));
         let _ = shell.close(|node| supports.projector(node as usize));
         assert_eq!(shell.walls.len(), 1);

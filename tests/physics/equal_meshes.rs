@@ -1,18 +1,11 @@
 //! Contact distance and imperfection of a capsule are the same on every mesh of its design.
 
-use billow_solver::geometry::fold::{Chirality, Fit, FoldDesign};
-use billow_solver::geometry::mesh::Shape;
+use billow_solver::models::film::capsule;
 use billow_solver::models::film::reference_gap::reference_gap;
-use billow_solver::models::film::{FilmRun, capsule};
-use billow_solver::models::run::Model;
-use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::DEFAULT_CFL;
-use billow_solver::scene::film_scene::FilmContact;
-use billow_solver::scene::timeline::Phase;
-use billow_solver::scene::{Scene, paper};
-use nalgebra::Vector3;
+use billow_solver::scene::paper;
 
 use crate::film_rig::stowed;
+use crate::prelude::*;
 
 /// The paper's capsule, and one of another fit with a higher stack that turns in alternate directions.
 fn scenes(subdivisions: u32) -> [Scene; 2] {

@@ -1,19 +1,10 @@
 //! Film in motion: moving supports, order in the step, failures. Free flight, drums, momentum and damping are reference
 //! cases of `billow-checks validate`.
 
-use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{icosphere, nodes_where, sheet};
-use billow_solver::mechanics::gas::GasState;
-use billow_solver::mechanics::supports::Supports;
-use billow_solver::output::ledger::Ledger;
-use billow_solver::output::outcome::FailureKind;
-use billow_solver::scene::Film;
-use billow_solver::scene::film_support::{FilmSupport, Hold};
-use billow_solver::scene::motion::{Motion, Profile};
-use billow_solver::system::PressureLoad;
-use nalgebra::Vector3;
 
-use crate::film_rig::{at_rest, free, mapped, moving, nitrogen_gas, orders};
+use crate::film_rig::{free, mapped, model, moving, nitrogen_gas, orders, still, unloaded};
+use crate::prelude::*;
 
 #[test]
 fn the_work_of_a_moving_support_balances() {
@@ -35,9 +26,8 @@ fn the_work_of_a_moving_support_balances() {
         motion,
     });
     let right_node = right.nodes[0] as usize;
-    let unloaded = (PressureLoad::Overpressure(0.0), GasState::default());
-    let (still, positions) = (Field::zeros(piece.positions.len()), Field::of(&piece.positions));
-    let mut film = moving(&piece, &Film::PAPER, unloaded, still, |system, _| {
+    let positions = Field::of(&piece.positions);
+    let mut film = still(&piece, &Film::PAPER, unloaded(), |system, _| {
         system.supports = Supports::new(&[left, right], &positions);
     });
     let start = film.view().ledger();
@@ -60,14 +50,13 @@ fn failures_have_their_kind() {
     let piece = icosphere(1, 0.5);
     let gas = nitrogen_gas();
     let filled = (PressureLoad::Gas(gas), gas.at_temperature(1e-3, 293.0));
-    let still = || Field::zeros(piece.positions.len());
-    let mut film = moving(&piece, &Film::PAPER, filled, still(), |_, settings| {
+    let mut film = still(&piece, &Film::PAPER, filled, |_, settings| {
         settings.step_limit = 7;
     });
     let failure = film.advance(1.0, &free()).unwrap_err();
     assert_eq!((failure.kind, film.view().steps()), (FailureKind::StepLimit, 7));
 
-    let mut film = moving(&piece, &Film::PAPER, filled, still(), |_, settings| {
+    let mut film = still(&piece, &Film::PAPER, filled, |_, settings| {
         settings.cfl = 3.0;
     });
     let failure = film.advance(1.0, &free()).unwrap_err();
@@ -77,17 +66,15 @@ fn failures_have_their_kind() {
     // Soft film under a pressure far beyond its modulus stretches without end; its energy balances.
     let soft = Film { youngs_modulus: 1e4, ..Film::PAPER_ELASTIC };
     let pressed = (PressureLoad::Overpressure(50.0), GasState::default());
-    let mut film = moving(&piece, &soft, pressed, still(), |_, settings| settings.cfl = 0.01);
+    let mut film = still(&piece, &soft, pressed, |_, settings| settings.cfl = 0.01);
     let failure = film.advance(10.0, &free()).unwrap_err();
     assert_eq!(failure.kind, FailureKind::Overstretched, "{failure:?}");
     assert!(failure.place.contains("times its length"), "{failure:?}");
 
     // A node faster than the waves of its film is no failure.
-    let unloaded = (PressureLoad::Overpressure(0.0), GasState::default());
-    let wave_speed =
-        at_rest(&piece, &soft, unloaded.0, unloaded.1).view().system.model.wave_speed();
+    let wave_speed = model(&piece, &soft).wave_speed();
     let fast = mapped(&piece, |_| Vector3::x() * (3.0 * wave_speed));
-    let mut film = moving(&piece, &soft, unloaded, fast, |_, _| ());
+    let mut film = moving(&piece, &soft, unloaded(), fast, |_, _| ());
     film.advance(0.02, &free()).unwrap();
 
     // Thrown inward through itself, the sphere turns inside out.
@@ -106,8 +93,7 @@ fn film_with_gas_is_of_second_order_in_the_step() {
     let mass = 1000.0 * 0.5 / (296.8 * 293.0);
     let volume = |cfl: f64| {
         let load = (PressureLoad::Gas(gas), gas.at_temperature(mass, 293.0));
-        let still = Field::zeros(shell.positions.len());
-        let mut film = moving(&shell, &Film::PAPER_ELASTIC, load, still, |_, settings| {
+        let mut film = still(&shell, &Film::PAPER_ELASTIC, load, |_, settings| {
             settings.cfl = cfl;
         });
         film.advance(0.9e-3, &free()).unwrap();

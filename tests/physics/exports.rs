@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
-use billow_solver::geometry::fold::{Assignment, Chirality, FoldDesign};
-use billow_solver::geometry::mesh::{Mesh, Shape};
+use billow_solver::geometry::fold::Assignment;
 use billow_solver::geometry::mesh_io::{fold, obj};
 
 use crate::geometry::{paper_design, solved};
+use crate::prelude::*;
 
 #[test]
 fn fold_assignments_agree_with_the_stowed_shape() {

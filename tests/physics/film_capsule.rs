@@ -1,12 +1,9 @@
 //! The paper's capsule as film without contact: conservation, and its static states.
 
 use billow_solver::models::film::{self, static_states};
-use billow_solver::models::run::Unobserved;
-use billow_solver::output::outcome::{Deployment, Stop};
-use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::DEFAULT_CFL;
-use billow_solver::scene::error::SceneError;
-use billow_solver::scene::{HeatTransfer, Scene, paper};
+use billow_solver::scene::paper;
+
+use crate::prelude::*;
 
 fn run(scene: &Scene, cfl: f64) -> Deployment {
     film::solve(InstructionSet::detect(), scene, cfl, None, &mut Unobserved).expect("a valid scene")

@@ -1,27 +1,13 @@
 //! Small films for the tests of the explicit solver.
 
-use billow_solver::geometry::field::Field;
-use billow_solver::geometry::mesh::Shape;
-use billow_solver::geometry::shell::Shell;
-use billow_solver::integrators::explicit::StoredExplicit;
-use billow_solver::integrators::{
-    FilmSimulation, SimulationSettings, StoredFilm, StoredIntegrator,
-};
-use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::mechanics::forces::membrane::{
     ElementHistory, NodeForces, assemble_conservative,
 };
-use billow_solver::mechanics::gas::{Gas, GasState};
 use billow_solver::models::film::capsule;
-use billow_solver::output::ledger::{Ledger, residuals};
-use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::film_scene::FilmScene;
-use billow_solver::scene::inflow::Inflow;
+use billow_solver::output::ledger::residuals;
 use billow_solver::scene::paper::nitrogen_supply;
-use billow_solver::scene::timeline::Phase;
-use billow_solver::scene::{Film, Scene};
-use billow_solver::system::{FilmSystem, PressureLoad};
-use nalgebra::Vector3;
+
+use crate::prelude::*;
 
 /// The paper's inflow, 5 g/s at 293 K, into a released capsule.
 pub const INFLOW: Phase = Phase {
@@ -55,15 +41,24 @@ pub fn mapped(shell: &Shell, mut map: impl FnMut(Vector3<f64>) -> Vector3<f64>) 
     Field::of(&shell.positions.iter().map(|node| map(*node)).collect::<Vec<_>>())
 }
 
-/// Film without velocity at the shell's positions.
-pub fn at_rest(
+/// Neither gas nor pressure.
+pub fn unloaded() -> (PressureLoad, GasState) {
+    (PressureLoad::Overpressure(0.0), GasState::default())
+}
+
+/// Film without velocity at the shell's positions, after a change of system and settings.
+pub fn still(
     shell: &Shell,
     film: &Film,
-    pressure: PressureLoad,
-    gas: GasState,
+    load: (PressureLoad, GasState),
+    change: impl FnOnce(&mut FilmSystem, &mut SimulationSettings),
 ) -> FilmSimulation {
-    let still = Field::zeros(shell.positions.len());
-    moving(shell, film, (pressure, gas), still, |_, _| ())
+    moving(shell, film, load, Field::zeros(shell.positions.len()), change)
+}
+
+/// A support that does not move.
+pub fn support(name: &str, nodes: Vec<u32>, hold: Hold) -> FilmSupport {
+    FilmSupport { name: name.to_owned(), nodes, hold, motion: None }
 }
 
 /// Film with these velocities (m/s) at the shell's positions, after a change of system and settings.

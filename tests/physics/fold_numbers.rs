@@ -1,10 +1,9 @@
 //! The fold of the paper's capsule and of similar designs, to every digit known.
 
-use billow_solver::geometry::fold::{FoldDesign, FoldError, FoldPattern, Nearest};
-use billow_solver::geometry::mesh::{Mesh, Shape};
-use billow_solver::scene::Film;
+use billow_solver::geometry::fold::{FoldError, Nearest};
 
 use crate::geometry::{crossings, paper_angles, paper_design, paper_height, solved};
+use crate::prelude::*;
 
 /// Asserts that a value rounds to the printed one: within half a unit of its last digit.
 #[track_caller]

@@ -3,11 +3,12 @@
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-use billow_solver::geometry::fold::{Caps, Chirality, Corner, Fit, FoldDesign, FoldPattern};
-use billow_solver::geometry::mesh::{Mesh, Part, Shape};
+use billow_solver::geometry::fold::{Caps, Corner};
+use billow_solver::geometry::mesh::Part;
 use proptest::prelude::*;
 
 use crate::geometry::crossings;
+use crate::prelude::*;
 
 /// Designs over N 4-16, M 1-8, cone, ratio, chirality; feasible ones are kept.
 fn designs() -> impl Strategy<Value = FoldDesign> {

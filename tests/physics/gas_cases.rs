@@ -1,15 +1,11 @@
 //! The gas against independent quadratures, and inflow windows against their closed form. Filling,
 //! blow-down and cooling are reference cases of `billow-checks validate`.
 
-use billow_solver::integrators::dormand_prince::{Control, DEFAULT_TOLERANCE};
-use billow_solver::mechanics::gas::Gas;
-use billow_solver::models::piston::{PistonRun, PistonState};
-use billow_solver::models::run::Model;
-use billow_solver::scene::inflow::{Inflow, Schedule};
+use billow_solver::integrators::dormand_prince::DEFAULT_TOLERANCE;
+use billow_solver::scene::inflow::Schedule;
 use billow_solver::scene::paper::{nitrogen_supply, window};
-use billow_solver::scene::timeline::Phase;
-use billow_solver::scene::{GasSupply, HeatTransfer, Species};
 
+use crate::prelude::*;
 use crate::rig::{adaptive, paper_scene, run, tube};
 
 /// A rigid tank of `volume` m³: a packed piston.

@@ -1,9 +1,8 @@
 //! Fold designs of the tests, and an intersection count that shares no code with the solver.
 
-use billow_solver::geometry::fold::{Fit, FoldDesign, FoldPattern};
-use billow_solver::geometry::mesh::Mesh;
 use billow_solver::scene::paper;
-use nalgebra::Vector3;
+
+use crate::prelude::*;
 
 /// The paper's capsule at n 5, fit `cone`.
 pub fn paper_design() -> FoldDesign {

@@ -1,23 +1,14 @@
 //! The implicit integrator and the hybrid: order, agreement with central differences, bits, refusals.
 
-use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{icosphere, nodes_where};
 use billow_solver::integrators::implicit::{Implicit, StepControl};
-use billow_solver::integrators::{FilmSimulation, SimulationSettings};
-use billow_solver::mechanics::supports::Supports;
-use billow_solver::models::run::{Answer, Observer, Pause, Progress, Unobserved};
-use billow_solver::models::{self, Stored};
-use billow_solver::output::events::{Event, EventKind};
-use billow_solver::output::ledger::{Ledger, residuals};
-use billow_solver::output::outcome::{Deployment, Stop};
-use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
-use billow_solver::scene::timeline::Phase;
-use billow_solver::scene::{DEFAULT_CFL, Film, IntegratorKind, ModelKind, Scene, Stepping, paper};
-use billow_solver::system::{PressureLoad, Workspace};
-use nalgebra::Vector3;
+use billow_solver::models;
+use billow_solver::output::events::Event;
+use billow_solver::output::ledger::residuals;
+use billow_solver::scene::paper;
 
-use crate::film_rig::{INFLOW, free, moving, nitrogen_gas, orders, resumed};
+use crate::film_rig::{INFLOW, free, nitrogen_gas, orders, resumed, still, support};
+use crate::prelude::*;
 
 /// The same film at its state, with implicit steps of this control.
 fn with_steps(film: FilmSimulation, control: StepControl) -> FilmSimulation {
@@ -46,8 +37,7 @@ fn sphere_with_loss(loss_factor: f64) -> FilmSimulation {
         Film { compression: 1.0, numerical_damping: 0.0, loss_factor, ..Film::PAPER_ELASTIC };
     let mass = 1000.0 * 0.5 / (296.8 * 293.0);
     let load = (PressureLoad::Gas(gas), gas.at_temperature(mass, 293.0));
-    let still = Field::zeros(shell.positions.len());
-    moving(&shell, &film, load, still, |_, _| ())
+    still(&shell, &film, load, |_, _| ())
 }
 
 fn end_of(mut film: FilmSimulation, time: f64, phase: &Phase) -> Field {
@@ -106,12 +96,10 @@ fn film_with_loss_damping_and_a_plane_agrees_with_central_differences() {
         let film = Film { compression: 1.0, numerical_damping: 0.0, ..Film::PAPER };
         let mass = 1000.0 * 0.5 / (296.8 * 293.0);
         let load = (PressureLoad::Gas(gas), gas.at_temperature(mass, 293.0));
-        let still = Field::zeros(shell.positions.len());
         let body = PlaneBody { normal: Vector3::z(), mass: 0.05, velocity: 0.0, force: -2.0 };
-        let support =
-            FilmSupport { name: "top".into(), nodes: top, hold: Hold::Body(body), motion: None };
+        let support = support("top", top, Hold::Body(body));
         let positions = Field::of(&shell.positions);
-        moving(&shell, &film, load, still, |system, settings| {
+        still(&shell, &film, load, |system, settings| {
             system.supports = Supports::new(&[support], &positions);
             system.mass_damping = 20.0;
             settings.cfl = 0.025;

@@ -31,6 +31,7 @@ mod implicit;
 mod membrane_cases;
 mod piston_capsule;
 mod piston_cases;
+mod prelude;
 mod quiescence;
 mod rig;
 mod rigid_planes;

@@ -2,14 +2,12 @@
 //! `billow-checks validate`, the stable step is a map of `billow-checks stability`.
 
 use billow_solver::geometry::shapes::sheet;
-use billow_solver::geometry::shell::Shell;
-use billow_solver::mechanics::film_model::{FilmError, FilmModel};
+use billow_solver::mechanics::film_model::FilmError;
 use billow_solver::mechanics::forces::damping;
 use billow_solver::mechanics::forces::membrane::strain_energy;
-use billow_solver::scene::Film;
-use nalgebra::Vector3;
 
 use crate::film_rig::{film_forces, mapped, model};
+use crate::prelude::*;
 
 #[test]
 fn invalid_films_are_refused() {

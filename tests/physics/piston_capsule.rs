@@ -1,18 +1,11 @@
 //! The paper's capsule as a piston: bands from finer models, failures, invalid scenes.
 
-use billow_solver::geometry::fold::{FoldDesign, FoldPattern};
-use billow_solver::models::run::{Model, Observer, Progress, Unobserved};
-use billow_solver::models::{self, piston::PistonRun};
+use billow_solver::models;
 use billow_solver::output::measures::Verdict;
-use billow_solver::output::outcome::{FailureKind, Stop};
-use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::error::SceneError;
 use billow_solver::scene::paper::{self, window};
-use billow_solver::scene::{
-    Film, HeatTransfer, Scene, Species, Stepping, Support, SupportLocation,
-};
 
 use crate::geometry::{paper_height, solved};
+use crate::prelude::*;
 use crate::rig::{paper_scene, run};
 
 fn injected() -> Scene {

@@ -1,14 +1,9 @@
 //! The film of the piston at the end of its stroke. The closed forms are
 //! reference cases of `billow-checks validate`.
 
-use billow_solver::integrators::dormand_prince::Control;
-use billow_solver::mechanics::gas::Gas;
-use billow_solver::models::piston::{EndFilm, Piston, PistonRun, PistonState};
-use billow_solver::models::run::Model;
-use billow_solver::scene::Film;
 use billow_solver::scene::paper::{BOTTOM_RADIUS, HEIGHT, TOP_RADIUS, nitrogen_supply};
-use billow_solver::scene::timeline::Phase;
 
+use crate::prelude::*;
 use crate::rig::{adaptive, fixed, tube};
 
 /// The end film of the paper's cone, for a moving mass of 70 g.

@@ -1,14 +1,9 @@
 //! Quiescent film takes longer steps without a larger error, until activity is detected.
 
-use billow_solver::integrators::{FilmSimulation, StoredIntegrator};
 use billow_solver::models::film::capsule;
-use billow_solver::output::events::EventKind;
-use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::DEFAULT_CFL;
-use billow_solver::scene::film_scene::FilmContact;
-use nalgebra::Vector3;
 
 use crate::film_rig::{INFLOW, edited, explicit, resumed, stowed, text};
+use crate::prelude::*;
 use crate::rig::paper_scene;
 
 /// The paper's capsule at n 3 with contact, stowed.

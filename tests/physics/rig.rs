@@ -1,13 +1,10 @@
 //! Pistons without a capsule.
 
-use billow_solver::integrators::dormand_prince::Control;
-use billow_solver::mechanics::gas::Gas;
 use billow_solver::models;
-use billow_solver::models::piston::{EndFilm, Piston, VolumeLaw};
-use billow_solver::models::run::Unobserved;
-use billow_solver::output::outcome::Deployment;
-use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::{Scene, Stepping, paper};
+use billow_solver::models::piston::VolumeLaw;
+use billow_solver::scene::paper;
+
+use crate::prelude::*;
 
 pub fn adaptive(tolerance: f64) -> Control {
     Control { stepping: Stepping::Adaptive(tolerance), step_limit: 10_000_000 }

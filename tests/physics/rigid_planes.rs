@@ -1,21 +1,11 @@
 //! Rigid planes and oblique supports: invariance under rotation, energy, momentum.
 
-use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{nodes_where, sheet};
-use billow_solver::integrators::{FilmSimulation, FilmView};
-use billow_solver::mechanics::gas::GasState;
-use billow_solver::mechanics::supports::Supports;
-use billow_solver::scene::Film;
-use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
-use billow_solver::scene::timeline::Phase;
-use billow_solver::system::PressureLoad;
-use nalgebra::{Rotation3, Vector3};
+use billow_solver::integrators::FilmView;
+use nalgebra::Rotation3;
 
-use crate::film_rig::moving;
-
-fn support(nodes: Vec<u32>, hold: Hold) -> FilmSupport {
-    FilmSupport { name: "plane".to_owned(), nodes, hold, motion: None }
-}
+use crate::film_rig::{still, support, unloaded};
+use crate::prelude::*;
 
 /// Film whose vibrations decay, so that rounding does not grow.
 const DAMPED: Film = Film { numerical_damping: 0.1, ..Film::PAPER };
@@ -29,13 +19,12 @@ fn hanging(turn: Rotation3<f64>, cfl: f64) -> (FilmSimulation, f64) {
     piece.positions = piece.positions.iter().map(|x| turn * x).collect();
     let plane = PlaneBody { normal: turn * Vector3::x(), mass: 0.02, velocity: -0.5, force: 3.0 };
     let supports = [
-        support(left.clone(), Hold::Plane(turn * Vector3::x())),
-        support(left, Hold::Plane(turn * Vector3::z())),
-        support(right, Hold::Body(plane)),
+        support("plane", left.clone(), Hold::Plane(turn * Vector3::x())),
+        support("plane", left, Hold::Plane(turn * Vector3::z())),
+        support("plane", right, Hold::Body(plane)),
     ];
-    let unloaded = (PressureLoad::Overpressure(0.0), GasState::default());
-    let (still, positions) = (Field::zeros(piece.positions.len()), Field::of(&piece.positions));
-    let mut film = moving(&piece, &DAMPED, unloaded, still, |system, settings| {
+    let positions = Field::of(&piece.positions);
+    let mut film = still(&piece, &DAMPED, unloaded(), |system, settings| {
         system.supports = Supports::new(&supports, &positions);
         system.mass_damping = 5.0;
         settings.cfl = cfl;
@@ -79,10 +68,12 @@ fn momentum_of_planes_and_film_is_conserved() {
     let plane = |mass: f64, velocity: f64| {
         Hold::Body(PlaneBody { normal: Vector3::x(), mass, velocity, force: 0.0 })
     };
-    let supports = [support(edge(0.0), plane(0.01, -1.0)), support(edge(0.3), plane(0.03, 2.0))];
-    let unloaded = (PressureLoad::Overpressure(0.0), GasState::default());
-    let (still, positions) = (Field::zeros(piece.positions.len()), Field::of(&piece.positions));
-    let mut film = moving(&piece, &DAMPED, unloaded, still, |system, _| {
+    let supports = [
+        support("plane", edge(0.0), plane(0.01, -1.0)),
+        support("plane", edge(0.3), plane(0.03, 2.0)),
+    ];
+    let positions = Field::of(&piece.positions);
+    let mut film = still(&piece, &DAMPED, unloaded(), |system, _| {
         system.supports = Supports::new(&supports, &positions);
         system.numerical_damping = 0.0;
     });

@@ -9,16 +9,11 @@
 
 use std::sync::Arc;
 
-use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{grid, joined, moved, nodes_where};
-use billow_solver::integrators::FilmSimulation;
 use billow_solver::mechanics::energy_term::{Blocks, EnergyTerm};
-use billow_solver::mechanics::gas::GasState;
-use billow_solver::scene::Film;
-use billow_solver::system::PressureLoad;
-use nalgebra::{Matrix3, Vector3};
 
-use crate::film_rig::{free, largest_residual, ledgers, moving};
+use crate::film_rig::{free, largest_residual, ledgers, moving, unloaded};
+use crate::prelude::*;
 
 /// A linear spring between two different nodes.
 #[derive(Debug, Clone, Copy)]
@@ -97,8 +92,7 @@ fn joined_pieces(stiffness: f64) -> (FilmSimulation, [u32; 2]) {
     let speed = |x: &Vector3<f64>| if x.x < 0.5 * DISTANCE { -SPEED } else { SPEED };
     let velocities: Vec<_> = shell.positions.iter().map(|x| Vector3::x() * speed(x)).collect();
     let film = Film { compression: 1.0, ..Film::PAPER_ELASTIC };
-    let load = (PressureLoad::Overpressure(0.0), GasState::default());
-    let film = moving(&shell, &film, load, Field::of(&velocities), |system, settings| {
+    let film = moving(&shell, &film, unloaded(), Field::of(&velocities), |system, settings| {
         let spring = Spring { nodes, stiffness, rest_length: DISTANCE };
         system.energy_terms.push(Arc::new(spring));
         settings.cfl = CFL;

@@ -1,27 +1,17 @@
 //! Static equilibrium by Newton's method: the tangent, supports, and comparison with damped motion.
 
-use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{grid, icosphere, nodes_where, pseudo_random};
-use billow_solver::geometry::shell::Shell;
-use billow_solver::integrators::{FilmSimulation, SimulationSettings};
-use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::mechanics::forces::tangent::{self, Stiffness};
-use billow_solver::mechanics::gas::GasState;
 use billow_solver::mechanics::material::Regime;
 use billow_solver::models::film::erected;
-use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::Film;
-use billow_solver::scene::film_scene::{Filling, FilmScene};
-use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
-use billow_solver::scene::motion::{Motion, Profile};
 use billow_solver::scene::paper::free_film;
 use billow_solver::statics::{
     Relaxation, StaticError, StaticFailureKind, Tolerances, equilibrium, solve_unobserved,
 };
-use billow_solver::system::{FilmSystem, PressureLoad};
-use nalgebra::{SVector, Vector2, Vector3};
+use nalgebra::{SVector, Vector2};
 
-use crate::film_rig::{film_forces, model};
+use crate::film_rig::{film_forces, model, support};
+use crate::prelude::*;
 use crate::rig::paper_scene;
 
 /// One element under an in-plane stretch, rotated in space.
@@ -137,10 +127,6 @@ fn edge(strip: &Shell, x: f64) -> Vec<u32> {
     nodes_where(strip, |position| (position.x - x).abs() < 1e-12)
 }
 
-fn on(name: &str, nodes: Vec<u32>, hold: Hold) -> FilmSupport {
-    FilmSupport { name: name.to_owned(), nodes, hold, motion: None }
-}
-
 /// A strip pulled by a rigid plane that a force pushes: N = F/width, the travel from the stretch.
 #[test]
 fn a_rigid_plane_moves_until_its_force_is_balanced() {
@@ -151,10 +137,10 @@ fn a_rigid_plane_moves_until_its_force_is_balanced() {
     let end_node = plate[0] as usize;
     let plane = PlaneBody { normal: slant, mass: 0.1, velocity: 0.0, force };
     let supports = vec![
-        on("wall", wall, Hold::Components([true, false, false])),
-        on("corner", vec![0], Hold::Components([true, true, false])),
-        on("flat", nodes_where(&shell, |_| true), Hold::Components([false, false, true])),
-        on("plate", plate, Hold::Body(plane)),
+        support("wall", wall, Hold::Components([true, false, false])),
+        support("corner", vec![0], Hold::Components([true, true, false])),
+        support("flat", nodes_where(&shell, |_| true), Hold::Components([false, false, true])),
+        support("plate", plate, Hold::Body(plane)),
     ];
     let scene = scene(shell, 0.0, supports);
     let state = solve_unobserved(&scene).unwrap();
@@ -185,9 +171,9 @@ fn reactions_at_a_moved_support_balance() {
         rotation: None,
     };
     let all = Hold::Components([true, true, true]);
-    let mut moved = on("jaw", jaw, all);
+    let mut moved = support("jaw", jaw, all);
     moved.motion = Some(motion);
-    let supports = vec![on("wall", wall, all), moved];
+    let supports = vec![support("wall", wall, all), moved];
     let state = solve_unobserved(&scene(shell, 0.0, supports)).unwrap();
     assert!((state.positions.x[jaw_node] - 0.303).abs() < 1e-15);
     let [wall, jaw] = [&state.reactions[0], &state.reactions[1]];

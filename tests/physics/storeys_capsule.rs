@@ -1,16 +1,12 @@
 //! The paper's capsule as storeys: equal bits, lid, failures, invalid scenes. Film as the measure and the similarity of times are
 //! reference cases.
 
-use billow_solver::models::run::{Model, Unobserved};
-use billow_solver::models::{self, storeys::StoreysRun};
+use billow_solver::models;
+use billow_solver::models::storeys::StoreysRun;
 use billow_solver::output::history::Sample;
-use billow_solver::output::outcome::{FailureKind, Stop};
-use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::inflow::Inflow;
 use billow_solver::scene::paper;
-use billow_solver::scene::timeline::Phase;
-use billow_solver::scene::{HeatTransfer, ModelKind, Scene, Stepping, Support, SupportLocation};
 
+use crate::prelude::*;
 use crate::rig::run;
 
 fn scene(end_time: f64) -> Scene {

@@ -2,21 +2,14 @@
 
 use std::sync::Arc;
 
-use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{icosphere, joined, moved, pseudo_random, sheet};
-use billow_solver::integrators::FilmSimulation;
-use billow_solver::mechanics::gas::GasState;
 use billow_solver::models::film::capsule;
-use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
 use billow_solver::scene::paper::{free_film, nitrogen_supply};
-use billow_solver::scene::plate::Plate;
-use billow_solver::scene::{Film, GasSupply, HeatTransfer};
-use billow_solver::system::{Evaluation, FilmState, FilmSystem, PressureLoad, Workspace};
-use nalgebra::{Matrix3, Vector3};
+use billow_solver::system::Evaluation;
 
 use crate::closures;
-use crate::film_rig::{INFLOW, free, moving, stowed};
+use crate::film_rig::{INFLOW, free, still, stowed};
+use crate::prelude::*;
 use crate::rig::paper_scene;
 use crate::spring::Spring;
 
@@ -87,9 +80,8 @@ fn pressed_sheets() -> FilmSimulation {
 fn sphere_with_a_spring() -> FilmSimulation {
     let shell = icosphere(1, 0.5);
     let nodes = [0, shell.positions.len() as u32 - 1];
-    let still = Field::zeros(shell.positions.len());
     let load = (PressureLoad::Overpressure(100.0), GasState::default());
-    moving(&shell, &Film { compression: 1.0, ..Film::PAPER_ELASTIC }, load, still, |system, _| {
+    still(&shell, &Film { compression: 1.0, ..Film::PAPER_ELASTIC }, load, |system, _| {
         let spring = Spring { nodes, stiffness: 4e3, rest_length: 0.1 };
         system.energy_terms.push(Arc::new(spring));
     })

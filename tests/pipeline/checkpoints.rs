@@ -64,7 +64,7 @@ fn attempts(folder: &TestFolder) -> usize {
 fn a_signal_stores_the_running_job_which_then_continues_with_the_same_bits() {
     let whole = TestFolder::finished(&study());
     // Under nohup a hangup stops nothing.
-    let signals = [("-USR1", 138), ("-HUP", 129)];
+    let signals = [("-INT", 130), ("-USR1", 138), ("-HUP", 129)];
     for (name, code) in signals.into_iter().filter(|(name, _)| *name != "-HUP" || !hangup_ignored())
     {
         let folder = TestFolder::new(&study());
@@ -74,6 +74,13 @@ fn a_signal_stores_the_running_job_which_then_continues_with_the_same_bits() {
         let output = child.wait_with_output().unwrap();
         assert!(start.elapsed() < Duration::from_secs(2));
         assert_eq!(output.status.code(), Some(code), "{}", stderr(&output));
+        let said = stderr(&output);
+        assert!(
+            said.contains("finished jobs are kept, the same command runs the remaining"),
+            "{said}"
+        );
+        let statuses = rows(&folder).iter().map(|row| row["status"].clone()).collect::<Vec<_>>();
+        assert_eq!(statuses, ["done", "pending"]);
         assert_eq!(files(&folder, "checkpoints").len(), 1);
         assert!(!folder.results().join("attempts.jsonl").exists());
         let status = stderr(&folder.run(&["status", "results/grid"]));

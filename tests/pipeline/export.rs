@@ -1,8 +1,8 @@
-//! `export --out`: the file, its message, what is refused.
+//! `export --out`: the file and its message.
 
 use serde_json::json;
 
-use crate::support::{TestFolder, grid, json_of, ran};
+use crate::support::{json_of, ran};
 
 #[test]
 fn a_cube_holds_every_done_job() {
@@ -20,18 +20,4 @@ fn a_cube_holds_every_done_job() {
     assert_eq!(std::fs::read(folder.path().join("again.h5")).unwrap(), file);
     let few = json_of(&folder, &["export", "--out", "few.nc", "--columns", "z_rim,volume"]);
     assert!(few[0]["variables"].as_u64() < row["variables"].as_u64());
-}
-
-#[test]
-fn a_cube_that_is_not_possible_is_refused_with_exit_code_2_and_leaves_no_file() {
-    let folder = TestFolder::new(&grid(&json!({
-        "N": [6], "M": [3], "alpha1_over_phi": [1], "mass_flow_rate": ["2 g/s"]
-    })));
-    let refused = |arguments: &[&str], expected: &str| {
-        folder.refuses(arguments, expected);
-        assert!(!folder.path().join("grid.nc").exists());
-    };
-    refused(&["export", "grid.json", "--out", "grid.nc"], "no results here");
-    folder.stdout(&["run", "grid.json", "-q"]);
-    refused(&["export", "--out", "grid.csv"], "ends in .nc or .h5");
 }

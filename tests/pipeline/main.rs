@@ -7,7 +7,6 @@ mod chart;
 mod checkpoints;
 mod compare_and_answer;
 mod contact_scenes;
-mod determinism;
 mod doctor_and_rerun;
 mod edge_of_physics;
 mod export;

@@ -284,22 +284,6 @@ fn a_generation_depends_only_on_the_finished_rows() {
 }
 
 #[test]
-fn ten_thousand_designs_are_planned() {
-    let generation = plan(
-        &with_grid(json!({
-            "N": {"from": 4, "to": 13, "step": 1},
-            "M": {"from": 1, "to": 10, "step": 1},
-            "top_radius": {"from": "100 mm", "to": "495 mm", "steps": 10},
-            "height": {"from": 0.5, "to": 2, "steps": 10},
-        })),
-        &[],
-    );
-    let ids: std::collections::BTreeSet<_> =
-        generation.points.iter().map(|point| &point.job.id).collect();
-    assert_eq!((generation.points.len(), ids.len()), (10_000, 10_000), "every id is unique");
-}
-
-#[test]
 fn a_window_ends_when_its_mass_is_inside() {
     let study = |window: Json| {
         let mut study = capsule();

@@ -1,11 +1,12 @@
 //! Results folders with missing, damaged or foreign files.
 
+use std::collections::BTreeSet;
 use std::fs;
 
 use billow_study::store::history_file;
 use serde_json::json;
 
-use crate::support::{TestFolder, grid, ran, small_grid, stderr};
+use crate::support::{TestFolder, grid, histories, ran, small_grid, stderr};
 
 #[test]
 fn histories_agree_with_the_table() {
@@ -31,6 +32,20 @@ fn histories_agree_with_the_table() {
 }
 
 #[test]
+fn a_job_has_the_same_history_in_every_study() {
+    let mut study = small_grid();
+    study["grid"]["N"] = json!([6]);
+    study["grid"]["M"] = json!([3, 2]);
+    let (all, some) = (histories(&ran().results()), TestFolder::finished(&study));
+    let some = histories(&some.results());
+    assert_eq!((all.len(), some.len()), (16, 8));
+    assert_eq!(all.values().collect::<BTreeSet<_>>().len(), 16, "different jobs, different files");
+    for (name, bytes) in some {
+        assert_eq!(all.get(&name), Some(&bytes), "{}", name.display());
+    }
+}
+
+#[test]
 fn a_lost_or_foreign_table_changes_no_answer_and_is_restored() {
     let folder = ran();
     let path = folder.results().join("summary.parquet");
@@ -46,23 +61,6 @@ fn a_lost_or_foreign_table_changes_no_answer_and_is_restored() {
         folder.stdout(&["run", "grid.json", "-q"]);
         assert_eq!(fs::read(&path).unwrap(), table);
     }
-}
-
-#[test]
-fn a_folder_of_another_study_is_refused_and_a_larger_grid_continues() {
-    let folder = ran();
-    let mut study = small_grid();
-    study["name"] = serde_json::json!("other");
-    fs::write(folder.path().join("other.json"), study.to_string()).unwrap();
-    let output = folder.run(&["run", "other.json", "--results", "results/grid"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("results of the study \"grid\", not of \"other\""));
-
-    let mut study = small_grid();
-    study["grid"]["mass_flow_rate"] = serde_json::json!(["2 g/s", "3 g/s"]);
-    fs::write(folder.path().join("grid.json"), study.to_string()).unwrap();
-    let said = folder.stdout(&["run", "grid.json", "-q"]);
-    assert!(said.starts_with("grid: 16 jobs run, 48 points\n"), "{said}");
 }
 
 #[test]

@@ -24,15 +24,6 @@ fn parts_are_merged_into_the_table_of_the_whole() {
     folder.stdout(&["doctor", "all"]);
 }
 
-#[test]
-fn results_of_another_study_are_not_merged() {
-    let folder = TestFolder::new(&small_grid());
-    folder.stdout(&["run", "grid.json", "--results", "one", "-q"]);
-    folder.stdout(&["run", "grid.json", "--set", "grid.N=[5]", "--results", "two", "-q"]);
-    folder.refuses(&["merge", "one", "two", "--results", "all"], "two: not results of the study");
-    assert!(!folder.path().join("all").exists());
-}
-
 /// The command of the array of `billow submit`, run here for each task; the queue is not asked.
 #[test]
 fn tasks_store_parts_of_the_missing_jobs_and_are_merged() {

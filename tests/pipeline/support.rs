@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::sync::{Arc, LazyLock, Mutex, OnceLock};
 
 use serde_json::Value;
 
@@ -20,10 +21,29 @@ impl TestFolder {
         Self { folder }
     }
 
-    /// The same, and the study has run.
+    /// The same, and the study has run. A study runs once; every folder has a copy of its results.
     pub fn finished(study: &Value) -> Self {
+        /// Where the runs are kept; `cargo` places it below `target`.
+        const KEPT: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/finished");
+        static RUNS: LazyLock<Mutex<BTreeMap<String, Arc<OnceLock<PathBuf>>>>> =
+            LazyLock::new(|| {
+                let _ = fs::remove_dir_all(KEPT);
+                Mutex::default()
+            });
+        let (number, run) = {
+            let mut runs = RUNS.lock().unwrap();
+            (runs.len(), Arc::clone(runs.entry(study.to_string()).or_default()))
+        };
+        let kept = run.get_or_init(|| {
+            let folder = Self::new(study);
+            folder.stdout(&["run", "grid.json", "-q"]);
+            let kept = Path::new(KEPT).join(number.to_string());
+            fs::create_dir_all(&kept).unwrap();
+            copy(&folder.path().join("results"), &kept);
+            kept.join("results")
+        });
         let folder = Self::new(study);
-        folder.stdout(&["run", "grid.json", "-q"]);
+        copy(kept, folder.path());
         folder
     }
 
@@ -77,6 +97,11 @@ impl TestFolder {
         let text = self.stdout(&["table", results, "--runs", "--json"]);
         serde_json::from_str(&text).unwrap()
     }
+}
+
+/// Copies a folder into another one, with all times of change.
+fn copy(from: &Path, into: &Path) {
+    assert!(Command::new("cp").arg("-a").args([from, into]).status().unwrap().success());
 }
 
 /// The stderr of a command.

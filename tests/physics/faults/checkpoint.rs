@@ -1,11 +1,7 @@
 //! A byte of a checkpoint changes on disk: its checksum refuses it, whatever the integrator.
 
-use billow_solver::integrators::StoredFilm;
-use billow_solver::models::run::{Model as _, Run, Unobserved};
-use billow_solver::output::checkpoint::{Checkpoint, CheckpointError};
-use billow_solver::scene::IntegratorKind;
-
 use super::scenes;
+use crate::prelude::*;
 
 /// Where the byte is: after the first of these texts.
 const PLACES: [&str; 6] = [

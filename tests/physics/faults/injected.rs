@@ -4,17 +4,11 @@
 //! the integrator sees, for one step or from then on, or one change of what a checkpoint holds. The energy
 //! accounting and the audits of the run go on: to them the fault is a defect of the program, not a new start.
 
-use billow_solver::geometry::field::Field;
-use billow_solver::integrators::{
-    Advance, Budget, Computed, FilmSimulation, Integrator, Interval, StoredFilm, StoredIntegrator,
-    entry,
-};
-use billow_solver::models::film::FilmRun;
-use billow_solver::output::ledger::Ledger;
+use billow_solver::integrators::{Advance, Budget, Computed, Integrator, Interval, entry};
 use billow_solver::output::outcome::Failure;
-use billow_solver::system::{FilmState, FilmSystem};
 
 use super::stored::ahead;
+use crate::prelude::*;
 
 /// What is wrong.
 #[derive(Debug, Clone, Copy)]

@@ -3,9 +3,7 @@
 
 use std::path::Path;
 
-use billow_solver::models::run::{self, Unobserved};
-use billow_solver::output::outcome::{Deployment, Stop};
-use billow_solver::scene::IntegratorKind;
+use billow_solver::models::run;
 
 mod checkpoint;
 mod injected;
@@ -16,6 +14,8 @@ mod table;
 use injected::{Change, injected};
 use scenes::SceneOf;
 use table::{BAG, CAPSULE, FILLING, Place, ROWS, SHEETS, STRIP};
+
+use crate::prelude::*;
 
 /// The page with the table.
 fn page() -> String {

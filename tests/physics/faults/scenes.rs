@@ -1,15 +1,10 @@
 //! Small scenes in which every integrator reaches the end. `refinement` 0 is the mesh of the quick tests.
 
 use billow_solver::geometry::shapes::{icosphere, joined, moved, sheet};
-use billow_solver::geometry::shell::Shell;
-use billow_solver::models::film::FilmRun;
-use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
-use billow_solver::scene::monitor_settings::MonitorSettings;
+use billow_solver::scene::InflowWindow;
 use billow_solver::scene::paper::{self, TEMPERATURE, free_film, nitrogen_supply, window};
-use billow_solver::scene::timeline::Timeline;
-use billow_solver::scene::{DEFAULT_CFL, Film, GasSupply, InflowWindow, IntegratorKind};
-use nalgebra::Vector3;
+
+use crate::prelude::*;
 
 /// A scene of an integrator at a refinement of its mesh.
 pub type SceneOf = fn(IntegratorKind, u32) -> (FilmRun, Timeline);

@@ -1,11 +1,8 @@
 //! Changes of what a checkpoint holds, whatever the integrator.
 
-use billow_solver::geometry::field::Field;
-use billow_solver::integrators::explicit::StoredExplicit;
 use billow_solver::integrators::implicit::PendingStep;
-use billow_solver::integrators::{StoredFilm, StoredIntegrator};
-use billow_solver::system::{FilmState, FilmSystem};
-use nalgebra::Vector3;
+
+use crate::prelude::*;
 
 /// The step that goes beyond the state, if there is one.
 pub fn ahead(stored: &mut StoredIntegrator) -> Option<&mut PendingStep> {

@@ -1,12 +1,11 @@
 //! Every fault. `docs/reference/faults.md` says which audit catches it in each integrator.
 
-use billow_solver::collision::contact::BroadPhaseFault;
 use billow_solver::platform::fault_injection::{Fault, Term};
-use billow_solver::system::{FilmState, FilmSystem};
 
 use super::injected::Change;
 use super::scenes::{self, SceneOf};
 use super::stored;
+use crate::prelude::*;
 
 /// A fault: its name in the table of the page, the change that makes it, and the scenes in which it is made.
 pub type Row = (&'static str, Change, &'static [Place]);
