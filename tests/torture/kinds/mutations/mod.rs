@@ -1,4 +1,4 @@
-//! Mutated studies, scenes and checkpoints: a result or a message, never a panic, an abort
+//! Mutated scenes and checkpoints: a result or a message, never a panic, an abort
 //! or a hang.
 
 use std::fs;
@@ -11,18 +11,15 @@ use serde_json::Value;
 use crate::harness::place::Place;
 use crate::harness::program::{self, Finish};
 use crate::harness::random::Random;
-use crate::harness::studies;
 use crate::harness::trial::{Fault, Kind, Trial};
 
 pub mod bytes;
 mod json;
 
 /// Number of mutated inputs.
-const TRIALS: usize = 10_000;
+const TRIALS: usize = 6_000;
 /// Time after which a command counts as hanging.
 const LIMIT: Duration = Duration::from_secs(60);
-/// Time after which a run of a mutated study is asked to stop. Chosen: some jobs of it are finished.
-const RUN_TIME: Duration = Duration::from_millis(300);
 /// Limit of the address space, in kB. Chosen: enough for every shipped file, and two fit on a small machine.
 const ADDRESS_SPACE: &str = "-v 4000000";
 /// Steps of a mutated scene.
@@ -36,7 +33,6 @@ struct Input {
 
 /// The kind.
 pub struct Mutations {
-    studies: Vec<Input>,
     scenes: Vec<Input>,
     /// OBJ files of the scenes, by name.
     meshes: Vec<(String, Vec<u8>)>,
@@ -48,8 +44,6 @@ pub struct Mutations {
 /// Reads the shipped files, and makes a checkpoint.
 pub fn prepare(place: &Place) -> Result<Mutations, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let mut study_inputs = inputs(&root.join("studies"))?;
-    study_inputs.push(Input { name: "small.json".to_owned(), value: studies::small() });
     let scenes = inputs(&root.join("scenes"))?;
     let meshes = files(&root.join("scenes"), "obj")?;
     let capsule = scenes.iter().find(|scene| scene.name == "capsule.json");
@@ -61,7 +55,7 @@ pub fn prepare(place: &Place) -> Result<Mutations, String> {
     let finish = program::run(place, &arguments);
     let checkpoint = fs::read(place.join("checkpoint.json"))
         .map_err(|error| format!("checkpoint.json: {error}: {}", finish.said()))?;
-    Ok(Mutations { studies: study_inputs, scenes, meshes, capsule, checkpoint })
+    Ok(Mutations { scenes, meshes, capsule, checkpoint })
 }
 
 fn files(folder: &Path, ending: &str) -> Result<Vec<(String, Vec<u8>)>, String> {
@@ -97,8 +91,7 @@ impl Kind for Mutations {
 
     fn trial(&self, number: usize, random: &mut Random, place: &Place) -> Trial {
         let mut trial = match number % 10 {
-            0..4 => self.study(random, place),
-            4..8 => self.scene(random, place),
+            0..7 => self.scene(random, place),
             _ => self.checkpoint(random, place),
         };
         if trial.longest > LIMIT {
@@ -108,33 +101,11 @@ impl Kind for Mutations {
     }
 
     fn note(&self) -> String {
-        "studies, scenes, checkpoints".to_owned()
+        "scenes, checkpoints".to_owned()
     }
 }
 
 impl Mutations {
-    /// `plan`; for some, `run` until a SIGTERM.
-    fn study(&self, random: &mut Random, place: &Place) -> Trial {
-        let input = random.pick(&self.studies);
-        let mut trial = Trial::new(format!("study {}", input.name));
-        place.write("s.json", &mutated_json(&input.value, random));
-        let summary = random.below(2) == 0;
-        let arguments: &[&str] =
-            if summary { &["plan", "s.json", "--summary"] } else { &["plan", "s.json"] };
-        let plan = limited(place, arguments);
-        check(&mut trial, "plan", &plan, &[0, 2]);
-        if plan.succeeded() && random.below(4) == 0 {
-            let command = program::limited(place, ADDRESS_SPACE, &studies::run_arguments());
-            let running = program::start(place, command);
-            std::thread::sleep(RUN_TIME);
-            running.signal("TERM");
-            let finish = running.finish(LIMIT);
-            trial.count("studies run", 1);
-            check(&mut trial, "run", &finish, &[0, 1, 2, 143]);
-        }
-        trial
-    }
-
     /// `solve` for a few steps.
     fn scene(&self, random: &mut Random, place: &Place) -> Trial {
         let input = random.pick(&self.scenes);
