@@ -1,7 +1,6 @@
 //! Little memory (`ulimit -v`): a study goes on without the jobs that do not fit, a resume runs nothing
 //! again, and no command aborts without a message.
 
-use std::fmt::Write;
 use std::time::Duration;
 
 use serde_json::{Value, json};
@@ -19,62 +18,19 @@ const LIMITS: [u32; 12] = [120, 160, 200, 260, 350, 500, 700, 1000, 1400, 1800, 
 const NEEDED: u32 = 260;
 /// Time after which a command counts as hanging.
 const LIMIT: Duration = Duration::from_mins(3);
-/// Vertices along an edge of the large square mesh: a million lines of faces.
-const SQUARE: usize = 710;
 
-/// Something that needs memory.
-#[derive(Debug, Clone, Copy)]
-enum Load {
-    /// A study with small jobs and one on a large mesh.
-    Mixed,
-    /// A study with a job of very many storeys.
-    Tall,
-    /// A mesh with a million lines.
-    Mesh,
-}
-
-/// Each load with each limit.
-const LOADS: [Load; 3] = [Load::Mixed, Load::Tall, Load::Mesh];
+/// Studies with small jobs and a large one: the axis of each.
+const LOADS: [(&str, [u32; 3]); 2] = [("subdivisions", [2, 200, 3]), ("M", [3, 300, 2])];
 
 /// The kind.
-pub struct Memory {
-    template: Place,
-}
+pub struct Memory;
 
-/// Writes the large mesh.
-pub fn prepare(place: &Place) -> Memory {
-    let mut obj = String::new();
-    let point = |index: usize| index as f64 * 1e-3;
-    for row in 0..SQUARE {
-        for column in 0..SQUARE {
-            let _ = writeln!(obj, "v {} {} 0", point(column), point(row));
-        }
-    }
-    for row in 0..SQUARE - 1 {
-        for column in 0..SQUARE - 1 {
-            let first = row * SQUARE + column + 1;
-            let (right, up) = (first + 1, first + SQUARE);
-            let _ = writeln!(obj, "f {first} {right} {up}\nf {right} {} {up}", up + 1);
-        }
-    }
-    place.write("large.obj", obj.as_bytes());
-    let scene = json!({
-        "format": "billow-scene", "version": 1, "mesh": { "positions": "large.obj" },
-        "gas": { "pressure": "1 kPa" }, "solver": { "end_time": "1 ms" }
-    });
-    place.write("scene.json", scene.to_string().as_bytes());
-    Memory { template: place.clone() }
-}
-
-fn study(load: Load) -> Value {
+fn study((axis, values): (&str, [u32; 3])) -> Value {
     let mut study = studies::small();
     study["solver"] = json!({ "model": "film", "end_time": "5 ms" });
     study["design"]["N"] = json!(6);
     study["gas"] = json!({ "mass_flow_rate": "1 g/s" });
-    study["grid"] = match load {
-        Load::Tall => json!({ "M": [3, 300, 2] }),
-        Load::Mixed | Load::Mesh => json!({ "subdivisions": [2, 200, 3] }),
-    };
+    study["grid"] = json!({ axis: values });
     study
 }
 
@@ -95,14 +51,6 @@ impl Kind for Memory {
         let limit = LIMITS[number / LOADS.len()];
         let load = LOADS[number % LOADS.len()];
         let mut trial = Trial::new(format!("{load:?} with {limit} MB"));
-        if matches!(load, Load::Mesh) {
-            place.copy_from(&self.template);
-            let arguments =
-                ["solve", "scene.json", "-q", "--stop-after", "1", "--checkpoint", "c.json"];
-            let finish = limited(place, limit, &arguments);
-            note_end(&mut trial, "solve", &finish, limit, &[0, 1, 2]);
-            return trial;
-        }
         place.write_study(&study(load));
         let finish = limited(place, limit, &studies::run_arguments());
         note_end(&mut trial, "run", &finish, limit, &[0, 1, 2]);

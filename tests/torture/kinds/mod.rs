@@ -33,7 +33,7 @@ pub fn prepare(name: &str, place: &Place) -> Result<Box<dyn Kind>, String> {
         "streams" => Box::new(streams::prepare(place)?),
         "corruptions" => Box::new(corruptions::prepare(place)?),
         "checkpoints" => Box::new(checkpoints::prepare(place)?),
-        "memory" => Box::new(memory::prepare(place)),
+        "memory" => Box::new(memory::Memory),
         "mutations" => Box::new(mutations::prepare(place)?),
         other => return Err(format!("no kind {other:?}")),
     })
