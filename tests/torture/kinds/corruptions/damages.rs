@@ -206,7 +206,9 @@ fn of_lines() -> Vec<Damage> {
         }),
         edit("cut after a line", Expect::Harmless, |lines, [at, _], _| lines.truncate(at)),
         edit("line ends of Windows", Expect::Harmless, |lines, _, _| {
-            lines.iter_mut().for_each(|line| line.push('\r'));
+            for line in lines {
+                line.push('\r');
+            }
         }),
     ]
 }

@@ -19,7 +19,7 @@ mod json;
 /// Number of mutated inputs.
 const TRIALS: usize = 6_000;
 /// Time after which a command counts as hanging.
-const LIMIT: Duration = Duration::from_secs(60);
+const LIMIT: Duration = Duration::from_mins(1);
 /// Limit of the address space, in kB. Chosen: enough for every shipped file, and two fit on a small machine.
 const ADDRESS_SPACE: &str = "-v 4000000";
 /// Steps of a mutated scene.
