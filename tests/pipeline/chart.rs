@@ -38,44 +38,32 @@ fn size(png: &[u8]) -> [u32; 2] {
 #[test]
 fn every_kind_is_drawn_as_svg_and_png() {
     let folder = TestFolder::finished(&study());
-    let feasible = "alpha1_over_phi == 9";
     for (arguments, name, expected) in [
+        ("--history z_rim,pressure --to 50ms", "history-z_rim-pressure", "End time 400 ms"),
         (
-            &["--history", "z_rim,pressure", "--where", feasible, "--to", "50 ms"][..],
-            "history-z_rim-pressure",
-            &[
-                "Time t (ms)",
-                "Mean height of the top ring, gas pressure over time",
-                "5 g/s",
-                "End time 400 ms",
-            ][..],
-        ),
-        (
-            &["--measure", "peak_vz", "--over", "mass_flow_rate"],
+            "--measure peak_vz --over mass_flow_rate",
             "peak_vz-over-mass_flow_rate",
-            &["Mass flow rate (g/s)", "infeasible (8)", "∅", "no value"],
+            "infeasible (8)",
         ),
         (
-            &["--measure", "peak_vz", "--over", "mass_flow_rate", "--by", "N", "--where", feasible],
+            "--measure peak_vz --over mass_flow_rate --by N --where alpha1_over_phi==9",
             "peak_vz-over-mass_flow_rate-by-N",
-            &["End time 20 ms", "End time 400 ms"],
+            "End time 20 ms",
         ),
         (
-            &["--measure", "peak_vz", "--map", "mass_flow_rate,N"],
+            "--measure peak_vz --map mass_flow_rate,N",
             "peak_vz-map-mass_flow_rate-N",
-            &["Mass flow rate (g/s)", "Number of panels N", "infeasible (8)"],
+            "Number of panels N",
         ),
     ] {
-        let printed = folder.stdout(&[&["chart"], arguments].concat());
+        let words: Vec<&str> = ["chart"].into_iter().chain(arguments.split(' ')).collect();
+        let printed = folder.stdout(&words);
         let paths: Vec<&str> = printed.lines().collect();
-        let charts = "results/grid/charts";
-        assert_eq!(paths, [format!("{charts}/{name}.svg"), format!("{charts}/{name}.png")]);
-        let shown = texts(&fs::read(folder.path().join(paths[0])).unwrap());
-        for text in expected {
-            let there = |shown: &String| shown == text;
-            assert!(shown.iter().any(there), "{name}: {text}: {shown:?}");
-        }
-        let png = fs::read(folder.path().join(paths[1])).unwrap();
+        let path = format!("results/grid/charts/{name}");
+        assert_eq!(paths, [format!("{path}.svg"), format!("{path}.png")]);
+        let [svg, png] = [0, 1].map(|kind| fs::read(folder.path().join(paths[kind])).unwrap());
+        let shown = texts(&svg);
+        assert!(shown.iter().any(|text| text == expected), "{name}: {shown:?}");
         let [width, height] = size(&png);
         assert!(width == 1920 && height > 600, "{width} {height}");
         assert!(png.len() > 20_000, "{name}: {} bytes is a blank page", png.len());

@@ -6,7 +6,7 @@ use billow_solver::scene::Film;
 use billow_study::store::history_file;
 use serde_json::{Value, json};
 
-use crate::solve::{done, number, scene_folder, solve};
+use crate::solve::{done, number, scene_folder, solve, solved};
 use crate::support::{paper_design, stderr};
 
 /// The paper's capsule on a coarse mesh for 20 ms, with changed keys.
@@ -109,8 +109,7 @@ fn the_force_on_a_plate_is_the_weight_of_the_film() {
     });
     // Released at 4 mm, and just above the plate.
     for height in [0.004, 1e-6] {
-        let folder = scene_folder(&scene, &[("sheet.obj", &sheet(height))]);
-        let summary = done(folder.path(), &["scene.json", "-q"], "");
+        let summary = solved(&scene, &[("sheet.obj", &sheet(height))]);
         // 0.2 m square.
         let weight = 0.04 * Film::PAPER.area_density() * 10.0;
         let force = number(&summary, "/contact/plates/floor");

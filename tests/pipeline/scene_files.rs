@@ -3,7 +3,7 @@
 use billow_study::input::schema::scene_schema;
 use serde_json::{Value, json};
 
-use crate::solve::{CUBE, capsule, cube, done, number, scene_folder, solve};
+use crate::solve::{CUBE, capsule, cube, done, number, refused, scene_folder, solve, solved};
 use crate::support::stderr;
 
 #[test]
@@ -12,7 +12,7 @@ fn meshes_of_other_programs_are_read() {
     let volume = |mesh: &Value, files: &[(&str, &str)]| {
         let scene = cube(mesh, &gas);
         assert!(jsonschema::validator_for(&scene_schema()).unwrap().is_valid(&scene));
-        number(&done(scene_folder(&scene, files).path(), &["scene.json", "-q"], ""), "/volume")
+        number(&solved(&scene, files), "/volume")
     };
     let cube_file = ("cube.obj", CUBE);
     let near =
@@ -40,10 +40,7 @@ fn meshes_of_other_programs_are_read() {
     near(volume(&json!({"positions": "apart.obj", "weld": 0}), &apart), 1.0);
     near(volume(&json!({"positions": "apart.obj", "weld": "1 um"}), &apart), 1.0);
     let scene = cube(&json!({"positions": "apart.obj"}), &gas);
-    let output = solve(scene_folder(&scene, &apart).path(), &["scene.json"], "");
-    assert_eq!(output.status.code(), Some(2));
-    let error = stderr(&output);
-    assert!(error.contains("leaks") && error.contains("mesh.weld"), "{error}");
+    refused(&scene, &apart, &["leaks", "mesh.weld"]);
     // A reference with separate faces, as flattening programs write it, and the same inline.
     let flat = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n".repeat(6)
         + "f 1 2 3 4\nf 5 6 7 8\nf 9 10 11 12\nf 13 14 15 16\nf 17 18 19 20\nf 21 22 23 24\n";
@@ -62,13 +59,9 @@ fn a_vertex_of_closure_that_no_rim_places_is_refused() {
     let whole = part.clone() + "f 8 5 9\n";
     let scene =
         cube(&json!({"positions": "cube.obj", "closure": "lid"}), &json!({"pressure": "0.1 Pa"}));
-    done(scene_folder(&scene, &[("cube.obj", &whole)]).path(), &["scene.json", "-q"], "");
-    let output = solve(scene_folder(&scene, &[("cube.obj", &part)]).path(), &["scene.json"], "");
-    let error = stderr(&output);
-    assert_eq!(output.status.code(), Some(2), "{error}");
-    for needle in ["mesh.closure", "OBJ vertex 9", "belongs to no film", "fix xyz"] {
-        assert!(error.contains(needle), "{needle:?} not in {error}");
-    }
+    solved(&scene, &[("cube.obj", &whole)]);
+    let texts = ["mesh.closure", "OBJ vertex 9", "belongs to no film", "fix xyz"];
+    refused(&scene, &[("cube.obj", &part)], &texts);
 }
 
 #[test]
@@ -108,10 +101,8 @@ fn a_flat_bag_opens_under_pressure_and_cannot_contain_gas() {
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert!(stderr(&output).contains("inverted_volume"), "{}", stderr(&output));
 
-    let folder = scene_folder(&scene(&json!({"initial_mass": "1 g"})), &files);
-    let output = solve(folder.path(), &["scene.json"], "");
-    assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("encloses no volume: its layers touch each other"));
+    let gas = scene(&json!({"initial_mass": "1 g"}));
+    refused(&gas, &files, &["encloses no volume: its layers touch each other"]);
 }
 
 #[test]
@@ -122,8 +113,7 @@ fn keys_without_effect_are_noted() {
     scene["gas"] = json!({"windows": [{"mass_flow_rate": "5 g/s"}]});
     scene["outputs"]["sample_interval"] = json!("10 ms");
     scene["solver"] = json!({"end_time": "10 ms"});
-    let folder = scene_folder(&scene, &[]);
-    let summary = done(folder.path(), &["scene.json", "-q"], "");
+    let summary = solved(&scene, &[]);
     let notes = summary["notes"].to_string();
     assert!(notes.contains("the one nearest to [200.0, 0.0, 500.0] m is"), "{notes}");
     assert!(notes.contains("release_time has no effect: the film stays packed"), "{notes}");

@@ -36,6 +36,19 @@ fn without_wall(output: &Output) -> Value {
     summary
 }
 
+/// The summary of a scene with these files.
+pub(crate) fn solved(scene: &Value, files: &[(&str, &str)]) -> Value {
+    done(scene_folder(scene, files).path(), &["scene.json", "-q"], "")
+}
+
+/// Solves a scene with these files, which must be refused with these texts on stderr.
+pub(crate) fn refused(scene: &Value, files: &[(&str, &str)], texts: &[&str]) {
+    let output = solve(scene_folder(scene, files).path(), &["scene.json"], "");
+    let error = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(texts.iter().all(|text| error.contains(text)), "{texts:?} not in {error}");
+}
+
 /// A folder with a scene file and further files.
 pub(crate) fn scene_folder(scene: &Value, files: &[(&str, &str)]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -224,9 +237,9 @@ fn an_erected_capsule_moves_its_ring_to_the_stowed_polygon() {
     scene["gas"] = json!({"pressure": "300 Pa"});
     scene["release_time"] = json!(0);
     scene["solver"]["cfl"] = json!(0.1);
-    let moved = done(scene_folder(&scene, &[]).path(), &["scene.json", "-q"], "");
+    let moved = solved(&scene, &[]);
     scene["solver"] = json!({"static": true});
-    let rest = done(scene_folder(&scene, &[]).path(), &["scene.json", "-q"], "");
+    let rest = solved(&scene, &[]);
     for summary in [&moved, &rest] {
         // The corner of the stowed N-gon, not the radius of the ring.
         let corner = number(summary, "/nodes/side/0");
@@ -265,8 +278,7 @@ fn a_rigid_plane_moves_as_a_body() {
     ]);
     scene["solver"] = json!({"end_time": "1 ms"});
     scene["outputs"] = json!({"nodes": {"lid": 4}, "sample_interval": "0.5 ms"});
-    let summary =
-        done(scene_folder(&scene, &[("cube.obj", CUBE)]).path(), &["scene.json", "-q"], "");
+    let summary = solved(&scene, &[("cube.obj", CUBE)]);
     assert!((number(&summary, "/nodes/lid/2") - 1.001).abs() < 1e-4);
     assert!(
         summary["reactions"]["plane"].is_object() && summary["reactions"]["plane_2"].is_object()
@@ -283,8 +295,7 @@ fn initial_velocities_add_up() {
     scene["gravity"] = json!(["1 m/s2", 0, -10]);
     scene["solver"] = json!({"end_time": "20 us"});
     scene["outputs"] = json!({"nodes": [1], "sample_interval": "5 us"});
-    let summary =
-        done(scene_folder(&scene, &[("cube.obj", CUBE)]).path(), &["scene.json", "-q"], "");
+    let summary = solved(&scene, &[("cube.obj", CUBE)]);
     let position: Vec<f64> =
         summary["nodes"]["1"].as_array().unwrap().iter().map(|n| n.as_f64().unwrap()).collect();
     // Vertex 1 starts at (1, 0, 0): velocity (0, 10, 0) by spin, (1, 0, 0) by file, (0, 0, 3) for all.

@@ -6,7 +6,7 @@ use std::process::Command;
 
 use billow_study::input::schema::study_schema;
 use billow_study::job::JobId;
-use billow_study::study::plan::next_jobs;
+use billow_study::study::plan::{Generation, next_jobs};
 use billow_study::study::{MAX_POINTS, Study};
 
 fn folder() -> PathBuf {
@@ -26,48 +26,38 @@ fn shipped() -> Vec<PathBuf> {
     files
 }
 
-fn ids(study: &Study) -> Vec<JobId> {
-    let generation = next_jobs(study, &[]).unwrap();
-    generation.points.into_iter().map(|point| point.job.id).collect()
-}
-
+/// The study written out with every default is the same study.
 #[test]
-fn every_shipped_study_is_valid_and_plans() {
+fn every_shipped_study_is_valid_and_plans_the_same_jobs_from_its_resolved_form() {
     let schema = study_schema();
     jsonschema::meta::validate(&schema).unwrap();
     let validator = jsonschema::validator_for(&schema).unwrap();
     let readme = fs::read_to_string(folder().join("README.md")).unwrap();
     for path in shipped() {
-        let text = fs::read_to_string(&path).unwrap();
-        let json: serde_json::Value = serde_json::from_str(&text).unwrap();
-        let errors: Vec<String> =
-            validator.iter_errors(&json).map(|e| format!("{}: {e}", e.instance_path())).collect();
-        assert!(errors.is_empty(), "{}: {errors:?}", path.display());
-
-        let study = Study::load(&path, &[]).unwrap();
-        assert!(study.question.ends_with('?'), "{}", path.display());
-        let generation = next_jobs(&study, &[]).unwrap();
-        assert!(generation.points.iter().any(|point| point.infeasible.is_none()));
-
         let name = path.file_name().unwrap().to_str().unwrap();
         assert!(readme.contains(&format!("`{name}`")), "{name} is not listed in README.md");
-    }
-}
-
-#[test]
-fn a_resolved_study_has_the_same_jobs() {
-    let validator = jsonschema::validator_for(&study_schema()).unwrap();
-    for path in shipped() {
         let study = Study::load(&path, &[]).unwrap();
-        let resolved = study.resolved();
-        let text = serde_json::to_string(&resolved).unwrap();
-        let value = serde_json::from_str(&text).unwrap();
-        assert!(validator.is_valid(&value), "{}", path.display());
-        let again = Study::from_text(&text, "study.json", "x", &[], MAX_POINTS);
-        let again = again.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        assert_eq!(ids(&again), ids(&study), "{}", path.display());
-        assert_eq!(again.resolved(), resolved);
-        assert_eq!(again.parameter_names(), study.parameter_names(), "{}", path.display());
+        assert!(study.question.ends_with('?'), "{name}");
+        let generation = next_jobs(&study, &[]).unwrap();
+        assert!(generation.points.iter().any(|point| point.infeasible.is_none()), "{name}");
+
+        let resolved = serde_json::to_string(&study.resolved()).unwrap();
+        for text in [&fs::read_to_string(&path).unwrap(), &resolved] {
+            let json: serde_json::Value = serde_json::from_str(text).unwrap();
+            let errors: Vec<String> = validator
+                .iter_errors(&json)
+                .map(|error| format!("{}: {error}", error.instance_path()))
+                .collect();
+            assert!(errors.is_empty(), "{name}: {errors:?}");
+        }
+        let again = Study::from_text(&resolved, "study.json", "x", &[], MAX_POINTS);
+        let again = again.unwrap_or_else(|error| panic!("{name}: {error}"));
+        let ids = |generation: &Generation| -> Vec<JobId> {
+            generation.points.iter().map(|point| point.job.id.clone()).collect()
+        };
+        assert_eq!(ids(&next_jobs(&again, &[]).unwrap()), ids(&generation), "{name}");
+        assert_eq!(again.resolved(), study.resolved(), "{name}");
+        assert_eq!(again.parameter_names(), study.parameter_names(), "{name}");
         assert_eq!((&again.name, &again.question), (&study.name, &study.question));
     }
 }

@@ -1,25 +1,33 @@
 //! Jobs and deployments for tests: valid scenes, invented series.
 
+use std::collections::BTreeMap;
+use std::num::NonZero;
+use std::path::Path;
+use std::sync::LazyLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign};
 use billow_solver::mechanics::material::Regime;
 use billow_solver::models::run::Progress;
 use billow_solver::output::audit::Audit;
 use billow_solver::output::frames::{Frame, Frames};
 use billow_solver::output::history::{COLUMNS, History};
 use billow_solver::output::measures::{Measures, Verdict};
-use billow_solver::output::outcome::{Deployment, Stop};
-use billow_solver::scene::{
-    Contact, Film, GasSupply, HeatTransfer, IntegratorKind, ModelKind, Outputs, Scene, Solver,
-    Species, Stepping, Thresholds,
-};
+use billow_solver::output::outcome::{Deployment, Stop as End};
+use billow_solver::scene::{Scene, paper};
 
+use crate::input::json::Json;
 use crate::input::value::Value;
 use crate::job::control::{Order, Task};
 use crate::job::executor::{Executor, Outcome};
+use crate::job::limits::JobLimits;
 use crate::job::point::{Infeasible, Point, Searched};
-use crate::job::{Job, JobId};
+use crate::job::{self, Job, JobId};
+use crate::platform::stop::Stop;
+use crate::run::runner::{CHECKPOINT_INTERVAL, Run};
+use crate::run::selection::Selection;
+use crate::store::results::Results;
+use crate::store::table::Table;
+use crate::study::finished::FinishedRow;
 use crate::study::plan::Generation;
 
 /// A job whose seed is `number`.
@@ -37,56 +45,7 @@ pub fn job(number: u32) -> Job {
 }
 
 fn scene(number: u32) -> Scene {
-    Scene {
-        design: FoldDesign {
-            fit: Fit::Height,
-            panels: 6,
-            storeys: 3,
-            bottom_radius: 0.25,
-            top_radius: None,
-            height: Some(0.7),
-            half_angle: None,
-            alpha1_over_phi: Some(1.0),
-            chirality: Chirality::Same,
-            stowed_height: 0.04,
-            subdivisions: 4,
-            caps: Caps::Polygon,
-        },
-        film: Film {
-            youngs_modulus: 3.5e9,
-            poisson_ratio: 0.3,
-            density: 1390.0,
-            thickness: 25e-6,
-            compression: 0.01,
-            numerical_damping: 0.0,
-            temperature: 293.15,
-            loss_factor: 0.0,
-            loss_frequency: 100.0,
-        },
-        gas: GasSupply {
-            species: Species { gas_constant: 296.8, cp: 1039.0 },
-            initial_mass: 0.0,
-            windows: Vec::new(),
-            ambient_pressure: 0.0,
-            heat_transfer: HeatTransfer::Coefficient(0.0),
-            leak_area: 0.0,
-            discharge_coefficient: 0.6,
-        },
-        supports: Vec::new(),
-        contact: Contact { distance: None, friction: 0.0, adhesion: 0.0 },
-        gravity: 0.0,
-        release_time: 0.0,
-        solver: Solver {
-            integrator: IntegratorKind::default(),
-            model: ModelKind::Piston,
-            end_time: 1.0,
-            stepping: Stepping::Adaptive(1e-9),
-            step_limit: 1_000_000,
-        },
-        outputs: Outputs { sample_interval: 0.001, frames: 0, thresholds: Thresholds::default() },
-        seed: u64::from(number),
-        imperfection_amplitude: None,
-    }
+    Scene { seed: u64::from(number), ..paper::empty_capsule(4, 1.0) }
 }
 
 /// A deployment with `samples` samples. Its series depend on `number` alone.
@@ -118,7 +77,7 @@ pub fn deployment(number: u32, samples: usize) -> Deployment {
         frames: None,
         measures,
         audit: Audit { ledger_residual: 1e-12, ..Audit::default() },
-        stop: Stop::Done,
+        stop: End::Done,
         steps: 100,
         elements: 0,
     }
@@ -162,6 +121,38 @@ pub fn generation(jobs: u32) -> Generation {
         })
         .collect();
     Generation { number: 0, points }
+}
+
+/// A folder in memory where the machine has one: the tests check the order of operations.
+pub fn folder() -> tempfile::TempDir {
+    let memory = Path::new("/dev/shm");
+    if memory.is_dir() { tempfile::tempdir_in(memory) } else { tempfile::tempdir() }.unwrap()
+}
+
+/// A run of every job of a plan, on one thread and without limits.
+pub fn run<'a>(
+    results: Results<'a>,
+    planner: &'a dyn Fn(&[FinishedRow]) -> Option<Generation>,
+    executor: &'a dyn Executor,
+) -> Run<'a> {
+    static STUDY: LazyLock<Json> = LazyLock::new(|| serde_json::json!({}).into());
+    Run {
+        name: "test",
+        study: &STUDY,
+        planner,
+        result_limits: &[],
+        label: &job::label,
+        table: &|points, records| Table::build(points, records, &|_| String::new()),
+        executor,
+        results,
+        threads: NonZero::new(1),
+        limits: JobLimits::default(),
+        checkpoint_interval: CHECKPOINT_INTERVAL,
+        stop: Stop::new(),
+        rerun: None,
+        selection: Selection::All,
+        known: BTreeMap::new(),
+    }
 }
 
 /// An executor without a solver: `script` gives the outcome of a job.

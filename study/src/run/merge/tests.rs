@@ -6,12 +6,10 @@ use std::fs;
 use std::path::Path;
 
 use super::*;
-use crate::job;
-use crate::job::limits::JobLimits;
 use crate::platform::files::Disk;
 use crate::run::event::Silent;
-use crate::run::fixture::{Scripted, ran};
-use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run, Summary};
+use crate::run::fixture::{self, Scripted, ran};
+use crate::run::runner::{self, Run, Summary};
 use crate::run::selection::{Part, Selection};
 use crate::study::finished::FinishedRow;
 use crate::study::plan;
@@ -32,22 +30,15 @@ fn study() -> Study {
 /// Runs a part of it with invented results.
 fn run_part(study: &Study, root: &Path, selection: Selection) -> Summary {
     let executor = Scripted::new(ran);
+    let planner = |finished: &[FinishedRow]| plan::next_jobs(study, finished);
+    let results = Results::new(&Disk, root);
     let run = Run {
         name: &study.name,
         study: &study.resolved(),
-        planner: &|finished: &[FinishedRow]| plan::next_jobs(study, finished),
-        result_limits: &[],
-        label: &job::label,
         table: &|points, records| Table::of_study(study, points, records),
-        executor: &executor,
-        results: Results::new(&Disk, root),
-        threads: std::num::NonZero::new(2),
-        limits: JobLimits::default(),
-        checkpoint_interval: CHECKPOINT_INTERVAL,
-        stop: Stop::new(),
-        rerun: None,
         selection,
-        known: Results::new(&Disk, root).known().unwrap(),
+        known: results.known().unwrap(),
+        ..fixture::run(results, &planner, &executor)
     };
     runner::run(&run, &mut Silent).unwrap()
 }

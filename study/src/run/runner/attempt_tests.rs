@@ -8,19 +8,13 @@ use super::*;
 use crate::job::control::{Order, Task};
 use crate::job::executor::Outcome;
 use crate::job::limits::Limit;
-use crate::job::{self, Job, Status};
+use crate::job::{Job, Status};
 use crate::platform::files::Disk;
-use crate::run::fixture::{self, ran};
+use crate::run::fixture::{self, folder, ran};
 use crate::store::attempts::Attempts;
 use crate::store::stored::other_physics;
-use crate::store::table::Table;
 
 const JOBS: u32 = 5;
-
-fn folder() -> tempfile::TempDir {
-    let memory = Path::new("/dev/shm");
-    if memory.is_dir() { tempfile::tempdir_in(memory) } else { tempfile::tempdir() }.unwrap()
-}
 
 /// Number of a job of the fixture.
 fn number(job: &Job) -> u32 {
@@ -77,22 +71,13 @@ fn run_with(
 ) -> (Summary, Vec<String>) {
     let ids: Option<BTreeSet<JobId>> =
         rerun.map(|numbers| numbers.iter().map(|number| fixture::job(*number).id).collect());
+    let planner = |finished: &[FinishedRow]| finished.is_empty().then(|| fixture::generation(JOBS));
     let study = Run {
-        name: "test",
-        study: &serde_json::json!({}).into(),
-        planner: &|finished| finished.is_empty().then(|| fixture::generation(JOBS)),
-        result_limits: &[],
-        label: &job::label,
-        table: &|points, records| Table::build(points, records, &|_| String::new()),
-        executor,
-        results: Results::new(&Disk, root),
         threads: NonZero::new(2),
-        limits: JobLimits::default(),
         checkpoint_interval: interval,
         stop: stop.clone(),
         rerun: ids.as_ref(),
-        selection: Selection::All,
-        known: BTreeMap::new(),
+        ..fixture::run(Results::new(&Disk, root), &planner, executor)
     };
     let mut notes = Notes(Vec::new());
     let summary = run(&study, &mut notes).unwrap();

@@ -8,23 +8,16 @@ use std::path::Path;
 use std::sync::atomic::Ordering;
 
 use super::*;
-use crate::job;
 use crate::job::executor::Outcome;
 use crate::job::limits::Limit;
 use crate::platform::files::failing::FailingFiles;
 use crate::platform::files::{Disk, Files};
 use crate::run::event::Silent;
-use crate::run::fixture::{self, Scripted, ran};
+use crate::run::fixture::{self, Scripted, folder, ran};
 use crate::store::history_file;
 use crate::store::journal::{Record, Writer};
-use crate::store::table::Table;
 
 const JOBS: u32 = 5;
-
-fn folder() -> tempfile::TempDir {
-    let memory = Path::new("/dev/shm");
-    if memory.is_dir() { tempfile::tempdir_in(memory) } else { tempfile::tempdir() }.unwrap()
-}
 
 /// Runs a plan of five points, the third infeasible; or some of its jobs again.
 fn run_on<S: Fn(u32) -> Outcome + Sync>(
@@ -36,23 +29,9 @@ fn run_on<S: Fn(u32) -> Outcome + Sync>(
     let ids: Option<BTreeSet<JobId>> =
         rerun.map(|numbers| numbers.iter().map(|number| fixture::job(*number).id).collect());
     let executor = Scripted::new(script);
-    let study = Run {
-        name: "test",
-        study: &serde_json::json!({}).into(),
-        planner: &|finished| finished.is_empty().then(|| fixture::generation(JOBS)),
-        result_limits: &[],
-        label: &job::label,
-        table: &|points, records| Table::build(points, records, &|_| String::new()),
-        executor: &executor,
-        results: Results::new(files, root),
-        threads: NonZero::new(1),
-        limits: JobLimits::default(),
-        checkpoint_interval: CHECKPOINT_INTERVAL,
-        stop: Stop::new(),
-        rerun: ids.as_ref(),
-        selection: Selection::All,
-        known: BTreeMap::new(),
-    };
+    let planner = |finished: &[FinishedRow]| finished.is_empty().then(|| fixture::generation(JOBS));
+    let study = fixture::run(Results::new(files, root), &planner, &executor);
+    let study = Run { rerun: ids.as_ref(), ..study };
     let ended = run(&study, &mut Silent);
     (ended, executor.executed.load(Ordering::SeqCst))
 }

@@ -13,21 +13,14 @@ use billow_solver::platform::seal;
 
 use super::*;
 use crate::input::value::Value;
-use crate::job;
 use crate::job::executor::Outcome;
 use crate::platform::error::Error;
 use crate::platform::files::failing::FailingFiles;
 use crate::platform::files::{Disk, Files};
 use crate::run::event::Silent;
-use crate::run::fixture::{self, Scripted, ran};
+use crate::run::fixture::{self, Scripted, folder, ran};
 use crate::store::history_file;
 use crate::store::table::Table;
-
-/// A folder in memory where the machine has one: these tests check the order of operations.
-fn folder() -> tempfile::TempDir {
-    let memory = Path::new("/dev/shm");
-    if memory.is_dir() { tempfile::tempdir_in(memory) } else { tempfile::tempdir() }.unwrap()
-}
 
 struct EventLog(Vec<Event>);
 
@@ -62,24 +55,9 @@ fn run_on(
     executor: &dyn Executor,
     reporter: &mut dyn Reporter,
 ) -> Result<Summary> {
-    let study = Run {
-        name: "test",
-        study: &serde_json::json!({ "jobs": jobs }).into(),
-        planner: &generation_zero(jobs),
-        result_limits: &[],
-        label: &job::label,
-        table: &|points, records| Table::build(points, records, &|_| String::new()),
-        executor,
-        results: Results::new(files, root),
-        threads: NonZero::new(threads),
-        limits: JobLimits::default(),
-        checkpoint_interval: CHECKPOINT_INTERVAL,
-        stop: Stop::new(),
-        rerun: None,
-        selection: Selection::All,
-        known: BTreeMap::new(),
-    };
-    run(&study, reporter)
+    let planner = generation_zero(jobs);
+    let study = fixture::run(Results::new(files, root), &planner, executor);
+    run(&Run { threads: NonZero::new(threads), ..study }, reporter)
 }
 
 fn run_quiet(root: &Path, jobs: u32, threads: usize, executor: &dyn Executor) -> Summary {
@@ -291,23 +269,9 @@ fn a_stop_keeps_finished_jobs_and_shows_the_others_as_pending() {
         ran(number)
     };
     let executor = Scripted::new(script);
-    let study = Run {
-        name: "test",
-        study: &serde_json::json!({}).into(),
-        planner: &generation_zero(12),
-        result_limits: &[],
-        label: &job::label,
-        table: &|points, records| Table::build(points, records, &|_| String::new()),
-        executor: &executor,
-        results: Results::new(&Disk, folder.path()),
-        threads: NonZero::new(1),
-        limits: JobLimits::default(),
-        checkpoint_interval: CHECKPOINT_INTERVAL,
-        stop: stop.clone(),
-        rerun: None,
-        selection: Selection::All,
-        known: BTreeMap::new(),
-    };
+    let planner = generation_zero(12);
+    let study = fixture::run(Results::new(&Disk, folder.path()), &planner, &executor);
+    let study = Run { stop: stop.clone(), ..study };
     let summary = run(&study, &mut Silent).unwrap();
     assert_eq!(summary.signal, Some(2));
     assert_eq!(summary.counts.status["done"], 4, "0, 1, 3 and the one that was running");
@@ -333,23 +297,7 @@ fn a_resumed_study_plans_its_generations_again() {
     };
     for expected in [5, 0] {
         let executor = Scripted::new(ran);
-        let study = Run {
-            name: "test",
-            study: &serde_json::json!({}).into(),
-            planner: &planner,
-            result_limits: &[],
-            label: &job::label,
-            table: &|points, records| Table::build(points, records, &|_| String::new()),
-            executor: &executor,
-            results: Results::new(&Disk, folder.path()),
-            threads: NonZero::new(2),
-            limits: JobLimits::default(),
-            checkpoint_interval: CHECKPOINT_INTERVAL,
-            stop: Stop::new(),
-            rerun: None,
-            selection: Selection::All,
-            known: BTreeMap::new(),
-        };
+        let study = fixture::run(Results::new(&Disk, folder.path()), &planner, &executor);
         run(&study, &mut Silent).unwrap();
         assert_eq!(executed(&executor), expected);
         assert_eq!(table(folder.path()).rows(), 6);
