@@ -18,6 +18,12 @@ use crate::store::results::Results;
 #[derive(Deserialize)]
 struct Head {
     scene: String,
+    state: Film,
+}
+
+/// A film as it is stored, beside what its integrator keeps.
+#[derive(Deserialize)]
+struct Film {
     state: State,
 }
 
@@ -42,7 +48,7 @@ impl Results<'_> {
     /// Simulated time of a job's checkpoint, s; `None` without a readable one.
     pub fn checkpoint_time(&self, id: &JobId) -> Option<f64> {
         let text = self.read_checkpoint(id).ok()??;
-        Head::read(id, &text).ok().map(|head| head.state.time)
+        Head::read(id, &text).ok().map(|head| head.state.state.time)
     }
 
     /// Checkpoints that are damaged or belong to another job, and what is wrong with them.
@@ -143,7 +149,8 @@ mod tests {
         assert_eq!(results.checkpoints().unwrap(), std::slice::from_ref(&id));
         assert_eq!(results.checkpoint_time(&id), None);
         assert_eq!(results.damaged_checkpoints().unwrap().len(), 1);
-        let object = format!(r#"{{"scene":"{id}","state":{{"time":0.25,"steps":7}}}}"#);
+        let object =
+            format!(r#"{{"scene":"{id}","state":{{"state":{{"time":0.25}},"integrator":7}}}}"#);
         results.write_checkpoint(&id, &seal::seal(&object)).unwrap();
         assert_eq!(results.checkpoint_time(&id), Some(0.25));
         assert!(results.damaged_checkpoints().unwrap().is_empty());
