@@ -18,6 +18,7 @@ mod conservation;
 #[expect(dead_code, reason = "the bytes in use are for the tests of the memory of a job")]
 mod counting;
 mod equal_meshes;
+mod every_model;
 mod explicit_cases;
 mod exports;
 mod faults;
