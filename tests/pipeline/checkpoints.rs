@@ -8,8 +8,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
-use crate::interruption::signal;
-use crate::support::{TestFolder, histories, ids, paper_design, stderr, without_costs};
+use crate::support::{TestFolder, histories, ids, paper_design, signal, stderr, without_costs};
 
 /// One long film job on the coarsest mesh, packed at first, and a short one.
 fn study() -> Value {
@@ -50,7 +49,8 @@ fn wait_until(child: &mut Child, what: &str, reached: impl Fn() -> bool) {
 fn running(folder: &TestFolder) -> Child {
     let mut child = folder.billow(&["run", "grid.json", "-q"]).spawn().unwrap();
     wait_until(&mut child, "its second job", || attempts(folder) == 3);
-    sleep(Duration::from_millis(150));
+    wait_until(&mut child, "the end of the short job", || files(folder, "jobs").len() == 1);
+    sleep(Duration::from_millis(50));
     child
 }
 

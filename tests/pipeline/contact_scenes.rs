@@ -45,19 +45,6 @@ fn sheet(height: f64) -> String {
 const REFERENCE_GAP: f64 = 0.791_899_699e-3;
 
 #[test]
-fn a_capsule_has_the_default_or_the_given_amplitude_of_its_imperfection() {
-    let amplitude = |changes: &Value| {
-        let scene = capsule(changes);
-        let folder = scene_folder(&scene, &[]);
-        let short = ["scene.json", "-q", "--set", "solver.end_time=\"1 ms\""];
-        number(&done(folder.path(), &short, ""), "/imperfection_amplitude")
-    };
-    assert!((amplitude(&json!({"seed": 1})) - 0.2 * REFERENCE_GAP).abs() < 1e-9);
-    let given = json!({"seed": 1, "imperfection_amplitude": "0.1 mm"});
-    assert!((amplitude(&given) - 1e-4).abs() < 1e-15);
-}
-
-#[test]
 fn a_folded_capsule_reports_its_contact() {
     let folder = scene_folder(&capsule(&json!({})), &[]);
     let summary = done(folder.path(), &["scene.json", "-q", "--out", "a.h5"], "");

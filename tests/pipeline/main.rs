@@ -19,7 +19,6 @@ mod harness {
     pub mod random;
 }
 mod instruction_sets;
-mod interruption;
 mod keys;
 mod mangled_studies;
 mod memory;

@@ -56,25 +56,11 @@ fn tasks_store_parts_of_the_missing_jobs_and_are_merged() {
 #[test]
 fn the_scripts_for_a_cluster_are_printed_without_one() {
     let folder = TestFolder::new(&small_grid());
-    let text = folder.stdout(&[
-        "submit",
-        "grid.json",
-        "--dry-run",
-        "--tasks",
-        "3",
-        "--time",
-        "90 min",
-        "--mem",
-        "2 GiB",
-        "--sbatch=--account=film",
-    ]);
-    for line in [
-        "#SBATCH --array=1-3",
-        "#SBATCH --time=01:30:00",
-        "#SBATCH --mem=2048M",
-        "#SBATCH --account=film",
-    ] {
-        assert!(text.lines().any(|found| found == line), "{line}: {text}");
+    let options = "--tasks 3 --time 90min --mem 2GiB --sbatch=--account=film";
+    let arguments = ["submit", "grid.json", "--dry-run"].into_iter().chain(options.split(' '));
+    let text = folder.stdout(&arguments.collect::<Vec<_>>());
+    for line in ["array=1-3", "time=01:30:00", "mem=2048M", "account=film"] {
+        assert!(text.contains(&format!("\n#SBATCH --{line}\n")), "{line}: {text}");
     }
     assert!(text.contains("--points \"$SLURM_ARRAY_TASK_ID/3\"") && text.contains(" merge "));
     assert!(!folder.results().exists());

@@ -10,8 +10,7 @@ use billow_study::input::schema::scene_schema;
 use billow_study::store::history_file;
 use serde_json::{Value, json};
 
-use crate::interruption::signal;
-use crate::support::{paper_design, stderr};
+use crate::support::{paper_design, signal, stderr};
 
 fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes")

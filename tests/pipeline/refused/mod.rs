@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
+use billow_study::input::schema::study_schema;
 use serde_json::{Value, json};
 
 use crate::search::{replicated, searching};
@@ -128,12 +129,12 @@ fn valid(kind: &str) -> Option<(&'static str, Value)> {
     }
 }
 
-/// The command line of a case; writes the file that it reads.
-fn command(folder: &TestFolder, case: &str, job: &str) -> Vec<String> {
+/// The command line of a case, and the file that it reads, which is written.
+fn command(folder: &TestFolder, case: &str, job: &str) -> (Vec<String>, Value) {
     let (kind, changes) = case.split_once(' ').unwrap_or((case, ""));
     let Some((command, mut json)) = valid(kind) else {
         let word = |word: &str| word.replace("{job}", job).replace('␣', " ");
-        return case.split_whitespace().map(word).collect();
+        return (case.split_whitespace().map(word).collect(), Value::Null);
     };
     for change in changes.split(" && ") {
         let (key, value) = change.split_once(" = ").expect("KEY = JSON");
@@ -141,7 +142,7 @@ fn command(folder: &TestFolder, case: &str, job: &str) -> Vec<String> {
         *key.split('.').fold(&mut json, |json, part| &mut json[part]) = value;
     }
     fs::write(folder.path().join("changed.json"), json.to_string()).unwrap();
-    vec![command.to_owned(), "changed.json".to_owned()]
+    (vec![command.to_owned(), "changed.json".to_owned()], json)
 }
 
 /// Names of the files in the folder.
@@ -155,11 +156,13 @@ fn every_mistake_gives_a_message_with_place_and_next_step() {
     let job = folder.rows("results/grid")[0]["job"].as_str().unwrap()[..8].to_owned();
     fs::write(folder.path().join("changed.json"), "").unwrap();
     let before = names(&folder);
-    let mut wrong = Vec::new();
+    let (mut wrong, mut refused_by_schema) = (Vec::new(), 0);
+    let schema = jsonschema::validator_for(&study_schema()).unwrap();
     let cases = CASES.lines().filter(|line| !line.is_empty() && !line.starts_with('#'));
     for line in cases {
         let (case, parts) = line.split_once(" => ").unwrap_or_else(|| panic!("{line}"));
-        let words = command(&folder, case, &job);
+        let (words, json) = command(&folder, case, &job);
+        refused_by_schema += u32::from(case.starts_with("study ") && !schema.is_valid(&json));
         let output = folder.run(&words.iter().map(String::as_str).collect::<Vec<_>>());
         let message = stderr(&output);
         let parts = parts.split(" ;; ").map(|part| part.replace("\\n", "\n"));
@@ -173,9 +176,11 @@ fn every_mistake_gives_a_message_with_place_and_next_step() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
     assert_eq!(names(&folder), before, "no file is written");
-    // The files that the cases change are valid.
+    // An editor with the schema finds most mistakes, and takes what the program takes.
+    assert!(refused_by_schema >= 20, "{refused_by_schema}");
     for kind in ["study", "film", "search", "seeds", "scene", "capsule"] {
         let (command, json) = valid(kind).unwrap();
+        assert!(command == "solve" || schema.is_valid(&json), "{kind}");
         fs::write(folder.path().join("changed.json"), json.to_string()).unwrap();
         folder.stdout(&[command, "changed.json", "-q"]);
     }
