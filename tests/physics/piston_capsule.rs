@@ -115,9 +115,12 @@ fn an_observer_can_stop_a_run() {
     assert_eq!(deployment.measures.verdict, None);
 }
 
+/// A change of a scene.
+type Change = fn(&mut Scene);
+
 #[test]
 fn invalid_piston_scenes_name_their_key() {
-    let changes: [(fn(&mut Scene), &str); 23] = [
+    let changes: [(Change, &str); 23] = [
         (|s| s.supports.clear(), "supports"),
         (
             |s| s.supports.push(Support { on: SupportLocation::TopRing, fix: "z".to_owned() }),

@@ -115,10 +115,13 @@ fn every_scene_that_ships_is_sound_by_the_schema_and_listed() {
     assert_eq!(printed(&["keys", "--schema", "scene"]), schema);
 }
 
-/// Scene, options, and values of its summary: place, value, tolerance. The sphere has the closed form p = (t/R) E/(1 − ν)
+/// A value of a summary: place, value, tolerance.
+type Expected = (&'static str, f64, f64);
+
+/// Scene, options, and values of its summary. The sphere has the closed form p = (t/R) E/(1 − ν)
 /// (λ² − 1)/λ, T = p R λ/2; the airbag is that of the reference case `square_airbag`; the torque of the hub is the
 /// same in motion and at rest.
-const REFERENCES: [(&str, &[&str], &[(&str, f64, f64)]); 5] = [
+const REFERENCES: [(&str, &[&str], &[Expected]); 5] = [
     (
         "sphere.json",
         &[],

@@ -20,10 +20,9 @@ fn closed() -> Stdio {
 
 /// A study with a finished run of one job.
 fn folder() -> TestFolder {
-    let folder = TestFolder::finished(&grid(&serde_json::json!({
+    TestFolder::finished(&grid(&serde_json::json!({
         "N": [6], "M": [3, 4], "alpha1_over_phi": [1], "mass_flow_rate": ["2 g/s"]
-    })));
-    folder
+    })))
 }
 
 #[test]

@@ -22,16 +22,12 @@ pub struct Frame {
     pub positions: Vec<[f32; 3]>,
     /// Regime of each element: taut, wrinkled or slack.
     pub regimes: Vec<Regime>,
-    /// Velocity of each node, m/s; empty in frames of earlier versions.
-    #[serde(default)]
+    /// Velocity of each node, m/s.
     pub velocities: Vec<[f32; 3]>,
     /// Principal second Piola-Kirchhoff stresses of each element, Pa, the larger first: those of the film law
-    /// at the positions. Empty in frames of earlier versions.
-    #[serde(default)]
+    /// at the positions.
     pub stresses: Vec<[f32; 2]>,
-    /// Distance of each node to other film, m, at most the contact distance. Empty without contact, and in
-    /// frames of earlier versions.
-    #[serde(default)]
+    /// Distance of each node to other film, m, at most the contact distance. Empty without contact.
     pub gaps: Vec<f32>,
 }
 

@@ -172,21 +172,17 @@ fn displacements(stored: &StoredFrames) -> Result<Vec<f64>> {
 /// The meaning of the colours: the one asked for, or storeys if the film has some.
 fn colour(asked: Option<ColourArg>, stored: &StoredFrames, frames: &[Frame]) -> Result<Colour> {
     let capsule = stored.storeys().iter().any(|storey| *storey > 0);
-    let refuse = |name, problem| refused("--colour", name, problem, "regime, stress, speed, none");
-    let found = match asked {
+    Ok(match asked {
         Some(ColourArg::Storey) if !capsule => {
-            return Err(refuse("storey", "this film is not a capsule and has no storeys"));
+            let problem = "this film is not a capsule and has no storeys";
+            return Err(refused("--colour", "storey", problem, "regime, stress, speed, none"));
         }
-        Some(ColourArg::Storey) => Some(Colour::Storey),
-        Some(ColourArg::Regime) => Some(Colour::Regime),
-        Some(ColourArg::None) => Some(Colour::Plain),
-        Some(ColourArg::Stress) => values::stress(frames).map(Colour::Quantity),
-        Some(ColourArg::Speed) => values::speed(frames, stored.triangles()).map(Colour::Quantity),
-        None if capsule => Some(Colour::Storey),
-        None => Some(Colour::Plain),
-    };
-    let name = if asked == Some(ColourArg::Speed) { "speed" } else { "stress" };
-    found.ok_or_else(|| refuse(name, "the frames of this file do not have it"))
+        Some(ColourArg::Regime) => Colour::Regime,
+        Some(ColourArg::Stress) => Colour::Quantity(values::stress(frames)),
+        Some(ColourArg::Speed) => Colour::Quantity(values::speed(frames, stored.triangles())),
+        Some(ColourArg::Storey) | None if capsule => Colour::Storey,
+        Some(ColourArg::Storey | ColourArg::None) | None => Colour::Plain,
+    })
 }
 
 fn source(args: &Args) -> Result<Source> {

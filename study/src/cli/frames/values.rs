@@ -66,8 +66,8 @@ fn significant(number: f64, digits: usize) -> String {
     short_number(rounded)
 }
 
-/// The largest principal stress of each element; `None` if the frames do not have it.
-pub(super) fn stress(frames: &[Frame]) -> Option<Quantity> {
+/// The largest principal stress of each element.
+pub(super) fn stress(frames: &[Frame]) -> Quantity {
     let of_frame = |frame: &Frame| -> Vec<f64> {
         frame.stresses.iter().map(|stress| f64::from(stress[0])).collect()
     };
@@ -75,16 +75,13 @@ pub(super) fn stress(frames: &[Frame]) -> Option<Quantity> {
     quantity("Largest principal stress", "Pa", values)
 }
 
-/// The speed of each element, the mean of its nodes; `None` if the frames do not have velocities.
-pub(super) fn speed(frames: &[Frame], triangles: &[[u32; 3]]) -> Option<Quantity> {
+/// The speed of each element, the mean of its nodes.
+pub(super) fn speed(frames: &[Frame], triangles: &[[u32; 3]]) -> Quantity {
     let speed = |frame: &Frame, node: u32| {
         let [x, y, z] = frame.velocities[node as usize].map(f64::from);
         (x * x + y * y + z * z).sqrt()
     };
     let of_frame = |frame: &Frame| -> Vec<f64> {
-        if frame.velocities.is_empty() {
-            return Vec::new();
-        }
         let mean =
             |nodes: &[u32; 3]| nodes.iter().map(|node| speed(frame, *node)).sum::<f64>() / 3.0;
         triangles.iter().map(mean).collect()
@@ -93,15 +90,13 @@ pub(super) fn speed(frames: &[Frame], triangles: &[[u32; 3]]) -> Option<Quantity
 }
 
 /// A quantity on a scale from zero that contains [`WITHIN_SCALE`] of all values.
-fn quantity(name: &str, si: &str, values: Vec<Vec<f64>>) -> Option<Quantity> {
-    if values.iter().any(Vec::is_empty) {
-        return None;
-    }
+fn quantity(name: &str, si: &str, values: Vec<Vec<f64>>) -> Quantity {
     let mut sorted: Vec<f64> = values.iter().flatten().copied().collect();
     sorted.sort_by(f64::total_cmp);
-    let largest = *sorted.last()?;
+    let largest = sorted.last().copied().unwrap_or_default();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index")]
-    let within = sorted[((sorted.len() - 1) as f64 * WITHIN_SCALE) as usize];
+    let within = (sorted.len().saturating_sub(1) as f64 * WITHIN_SCALE) as usize;
+    let within = sorted.get(within).copied().unwrap_or_default();
     // Film without stress or motion still has a scale.
     let end = if within > 0.0 { within } else { largest.max(0.0) };
     let unit = Unit::fit(si, [end]);
@@ -112,14 +107,14 @@ fn quantity(name: &str, si: &str, values: Vec<Vec<f64>>) -> Option<Quantity> {
     } else {
         String::new()
     };
-    Some(Quantity {
+    Quantity {
         label: format!("{}{beyond}", unit.label(name)),
         values: values
             .into_iter()
             .map(|values| values.into_iter().map(|value| unit.shown(value)).collect())
             .collect(),
         range: [0.0, end],
-    })
+    }
 }
 
 #[cfg(test)]
@@ -167,13 +162,11 @@ mod tests {
     #[test]
     fn a_quantity_has_one_scale_for_all_frames() {
         let frames = [frame(0.0, 1e6), frame(0.1, 5e6)];
-        let stress = stress(&frames).unwrap();
+        let stress = stress(&frames);
         assert_eq!(stress.values, [[1.0], [5.0]]);
         assert!(stress.label.starts_with("Largest principal stress (MPa)"), "{}", stress.label);
-        let speed = speed(&frames, &[[0, 1, 2]]).unwrap();
+        let speed = speed(&frames, &[[0, 1, 2]]);
         assert!((speed.values[1][0] - 5.0).abs() < 1e-12 && speed.label == "Speed (m/s)");
-        let older = Frame { stresses: Vec::new(), ..frame(0.0, 0.0) };
-        assert!(super::stress(&[older]).is_none());
-        assert!(super::stress(&[frame(0.0, 0.0)]).unwrap().range[1] > 0.0);
+        assert!(super::stress(&[frame(0.0, 0.0)]).range[1] > 0.0);
     }
 }

@@ -1,4 +1,4 @@
-//! The fields of frames: velocities, principal stresses, gaps. Frames of earlier versions have none.
+//! The fields of frames: velocities, principal stresses, and with contact gaps.
 
 use std::ops::Range;
 
@@ -29,39 +29,30 @@ fn sizes(frames: &Frames) -> (usize, usize) {
     (nodes, frames.triangles.len())
 }
 
-/// Which fields the frames have: velocities, stresses, gaps.
-fn present(frames: &Frames) -> [bool; 3] {
-    frames.frames.first().map_or([false; 3], |frame| {
-        [!frame.velocities.is_empty(), !frame.stresses.is_empty(), !frame.gaps.is_empty()]
-    })
+/// Whether the frames have gaps: film with contact.
+fn has_gaps(frames: &Frames) -> bool {
+    frames.frames.first().is_some_and(|frame| !frame.gaps.is_empty())
 }
 
 /// Whether a frame has the fields of all frames, in full.
 pub(super) fn fit(frame: &Frame, frames: &Frames) -> bool {
     let (nodes, elements) = sizes(frames);
-    let lengths = [frame.velocities.len(), frame.stresses.len(), frame.gaps.len()];
-    let expected = [nodes, elements, nodes];
-    let present = present(frames);
-    (0..3).all(|k| lengths[k] == if present[k] { expected[k] } else { 0 })
+    let gaps = if has_gaps(frames) { nodes } else { 0 };
+    [frame.velocities.len(), frame.stresses.len(), frame.gaps.len()] == [nodes, elements, gaps]
 }
 
 /// Adds the fields to a content hash.
 pub(super) fn hash(frames: &Frames, contents: &mut Contents) {
     let (nodes, elements) = sizes(frames);
     let count = frames.frames.len();
-    let [has_velocities, has_stresses, has_gaps] = present(frames);
     let bytes = |value: f32| value.to_bits().to_le_bytes();
-    if has_stresses {
-        for (which, name) in STRESSES.iter().enumerate() {
-            let name = format!("VTKHDF/CellData/{name}");
-            contents.add(&name, count * elements, stresses(frames, which).map(bytes));
-        }
+    for (which, name) in STRESSES.iter().enumerate() {
+        let name = format!("VTKHDF/CellData/{name}");
+        contents.add(&name, count * elements, stresses(frames, which).map(bytes));
     }
-    if has_velocities {
-        let name = "VTKHDF/PointData/velocity";
-        contents.add(name, 3 * count * nodes, velocities(frames).map(bytes));
-    }
-    if has_gaps {
+    let name = "VTKHDF/PointData/velocity";
+    contents.add(name, 3 * count * nodes, velocities(frames).map(bytes));
+    if has_gaps(frames) {
         contents.add("VTKHDF/PointData/gap", count * nodes, gaps(frames).map(bytes));
     }
 }
@@ -76,25 +67,17 @@ pub(super) fn write(
     let count = frames.frames.len();
     let integer = |number: usize| i64::try_from(number).unwrap_or(i64::MAX);
     let every = |size: usize| (0..count).map(|step| integer(step * size)).collect::<Vec<i64>>();
-    let [has_velocities, has_stresses, has_gaps] = present(frames);
-    if has_stresses {
-        for (which, name) in STRESSES.iter().enumerate() {
-            let values: Vec<f32> = stresses(frames, which).collect();
-            array(cells, name, values.len(), Some(&[elements]), &values)?;
-            array(cell_offsets, name, count, None, &every(elements))?;
-        }
-    }
-    if !has_velocities && !has_gaps {
-        return Ok(());
+    for (which, name) in STRESSES.iter().enumerate() {
+        let values: Vec<f32> = stresses(frames, which).collect();
+        array(cells, name, values.len(), Some(&[elements]), &values)?;
+        array(cell_offsets, name, count, None, &every(elements))?;
     }
     let points = create_group(group, "PointData")?;
     let offsets = create_group(steps, "PointDataOffsets")?;
-    if has_velocities {
-        let values: Vec<f32> = velocities(frames).collect();
-        array(&points, "velocity", (count * nodes, 3), Some(&[nodes, 3]), &values)?;
-        array(&offsets, "velocity", count, None, &every(nodes))?;
-    }
-    if has_gaps {
+    let values: Vec<f32> = velocities(frames).collect();
+    array(&points, "velocity", (count * nodes, 3), Some(&[nodes, 3]), &values)?;
+    array(&offsets, "velocity", count, None, &every(nodes))?;
+    if has_gaps(frames) {
         let values: Vec<f32> = gaps(frames).collect();
         array(&points, "gap", values.len(), Some(&[nodes]), &values)?;
         array(&offsets, "gap", count, None, &every(nodes))?;
@@ -102,34 +85,32 @@ pub(super) fn write(
     Ok(())
 }
 
-/// The fields of a file; `None` for one that it does not have.
+/// The fields of a file.
 #[derive(Debug, Clone)]
 pub(super) struct StoredFields {
-    velocities: Option<Dataset>,
-    stresses: Option<[Dataset; 2]>,
+    velocities: Dataset,
+    stresses: [Dataset; 2],
+    /// `None` without contact.
     gaps: Option<Dataset>,
 }
 
-/// Velocities, principal stresses and gaps of a frame; empty for a field that the file does not have.
+/// Velocities, principal stresses and gaps of a frame; no gaps without contact.
 type FrameFields = (Vec<[f32; 3]>, Vec<[f32; 2]>, Vec<f32>);
 
 impl StoredFields {
     /// Opens the fields of the group VTKHDF; `points` and `cells` are the rows of all frames.
     pub(super) fn open(group: &Group, points: usize, cells: usize) -> hdf5::Result<Self> {
-        let optional = |name: &str, shape: &[usize]| -> hdf5::Result<Option<Dataset>> {
-            let (parent, _) = name.split_once('/').unwrap_or_default();
-            if !group.link_exists(parent) || !group.link_exists(name) {
-                return Ok(None);
-            }
+        let open = |name: &str, shape: &[usize]| -> hdf5::Result<Dataset> {
             let dataset = group.dataset(name)?;
             let fits = dataset.shape() == shape;
-            fits.then_some(Some(dataset)).ok_or_else(|| format!("{name} has another size").into())
+            fits.then_some(dataset).ok_or_else(|| format!("{name} has another size").into())
         };
-        let [first, second] = STRESSES.map(|name| optional(&format!("CellData/{name}"), &[cells]));
+        let [first, second] = STRESSES.map(|name| open(&format!("CellData/{name}"), &[cells]));
+        let gap = "PointData/gap";
         Ok(Self {
-            velocities: optional("PointData/velocity", &[points, 3])?,
-            stresses: first?.zip(second?).map(|(first, second)| [first, second]),
-            gaps: optional("PointData/gap", &[points])?,
+            velocities: open("PointData/velocity", &[points, 3])?,
+            stresses: [first?, second?],
+            gaps: group.link_exists(gap).then(|| open(gap, &[points])).transpose()?,
         })
     }
 
@@ -145,20 +126,11 @@ impl StoredFields {
         let column = |dataset: &Dataset, range: &Range<usize>| {
             dataset.read_slice_1d::<f32, _>(range.clone()).map(|values| values.to_vec())
         };
-        let velocities = match &self.velocities {
-            Some(dataset) => {
-                let values = dataset.read_slice_2d::<f32, _>((of_nodes.clone(), ..))?;
-                values.as_slice().unwrap_or_default().as_chunks::<3>().0.to_vec()
-            }
-            None => Vec::new(),
-        };
-        let stresses = match &self.stresses {
-            Some([first, second]) => {
-                let pairs = column(first, &of_elements)?.into_iter();
-                pairs.zip(column(second, &of_elements)?).map(|(a, b)| [a, b]).collect()
-            }
-            None => Vec::new(),
-        };
+        let velocities = self.velocities.read_slice_2d::<f32, _>((of_nodes.clone(), ..))?;
+        let velocities = velocities.as_slice().unwrap_or_default().as_chunks::<3>().0.to_vec();
+        let [first, second] = &self.stresses;
+        let pairs = column(first, &of_elements)?.into_iter();
+        let stresses = pairs.zip(column(second, &of_elements)?).map(|(a, b)| [a, b]).collect();
         let gaps = match &self.gaps {
             Some(dataset) => column(dataset, &of_nodes)?,
             None => Vec::new(),

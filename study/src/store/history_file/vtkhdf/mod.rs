@@ -15,7 +15,6 @@
 //!     PartOffsets, CellOffsets, ConnectivityIdOffsets 0; NumberOfParts 1; PointOffsets k · nodes
 //!     CellDataOffsets/storey 0; the other CellDataOffsets k · elements; PointDataOffsets k · nodes
 //! ```
-//! Files of earlier versions have no stresses, no velocities and no gaps.
 //!
 //! `CellOffsets` and `ConnectivityIdOffsets` have a second axis of length one: an unstructured grid has
 //! one kind of topology. Source: "VTKHDF format specification" in the documentation of VTK.
