@@ -1,11 +1,12 @@
 //! Small films for the tests of the explicit solver.
 
+use billow_solver::geometry::shapes::{joined, moved, sheet};
 use billow_solver::mechanics::forces::membrane::{
     ElementHistory, NodeForces, assemble_conservative,
 };
 use billow_solver::models::film::capsule;
 use billow_solver::output::ledger::residuals;
-use billow_solver::scene::paper::nitrogen_supply;
+use billow_solver::scene::paper::{free_film, nitrogen_supply};
 
 use crate::prelude::*;
 
@@ -76,6 +77,35 @@ pub fn moving(
     let mut settings = SimulationSettings::default();
     change(&mut system, &mut settings);
     FilmSimulation::new(system, settings, Field::of(&shell.positions), velocities, gas)
+}
+
+/// Two sheets that cross over a floor, pressed together by their weight, after 10 ms.
+pub fn pressed_sheets(monitor: MonitorSettings, mass_damping: f64) -> FilmSimulation {
+    let lower = moved(sheet(6, 5, 0.3, 0.25), |x| x + Vector3::new(0.0, 0.0, 0.9e-3));
+    let turned = |x: Vector3<f64>| Vector3::new(0.24 - x.y, 0.013 + 0.8 * x.x, 1.5e-3 + 2e-3 * x.x);
+    let shell = joined(&[lower, moved(sheet(6, 5, 0.3, 0.25), turned)]);
+    let plate = Plate {
+        name: "floor".to_owned(),
+        point: Vector3::zeros(),
+        normal: Vector3::z(),
+        motion: None,
+        removal_time: f64::INFINITY,
+    };
+    let contact = FilmContact {
+        distance: Some(1e-3),
+        plates: vec![plate],
+        monitor,
+        ..FilmContact::default()
+    };
+    let mut scene = FilmScene {
+        gravity: Vector3::new(0.0, 0.0, -100.0),
+        contact: Some(contact),
+        ..free_film(shell, Film { numerical_damping: 0.1, compression: 0.2, ..Film::PAPER_ELASTIC })
+    };
+    scene.solver.mass_damping = mass_damping;
+    let mut film = capsule::start(&scene, &[]).unwrap();
+    film.advance(0.01, &free()).unwrap();
+    film
 }
 
 /// The same film after a change of what is stored of it.

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use billow_solver::geometry::shapes::{icosphere, joined, moved, pseudo_random, sheet};
+use billow_solver::geometry::shapes::{icosphere, pseudo_random};
 use billow_solver::models::film::capsule;
 use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::system::Evaluation;
 
 use crate::closures;
-use crate::film_rig::{INFLOW, free, still, stowed};
+use crate::film_rig::{INFLOW, free, pressed_sheets, still, stowed};
 use crate::prelude::*;
 use crate::rig::paper_scene;
 use crate::spring::Spring;
@@ -52,30 +52,6 @@ fn sphere(heat_transfer: HeatTransfer) -> FilmSimulation {
     film
 }
 
-/// Two sheets that cross over a floor, pressed together by their weight.
-fn pressed_sheets() -> FilmSimulation {
-    let lower = moved(sheet(6, 5, 0.3, 0.25), |x| x + Vector3::new(0.0, 0.0, 0.9e-3));
-    let turned = |x: Vector3<f64>| Vector3::new(0.24 - x.y, 0.013 + 0.8 * x.x, 1.5e-3 + 2e-3 * x.x);
-    let shell = joined(&[lower, moved(sheet(6, 5, 0.3, 0.25), turned)]);
-    let plate = Plate {
-        name: "floor".to_owned(),
-        point: Vector3::zeros(),
-        normal: Vector3::z(),
-        motion: None,
-        removal_time: f64::INFINITY,
-    };
-    let contact =
-        FilmContact { distance: Some(1e-3), plates: vec![plate], ..FilmContact::default() };
-    let scene = FilmScene {
-        gravity: Vector3::new(0.0, 0.0, -100.0),
-        contact: Some(contact),
-        ..free_film(shell, Film { numerical_damping: 0.1, compression: 0.2, ..Film::PAPER_ELASTIC })
-    };
-    let mut film = capsule::start(&scene, &[]).unwrap();
-    film.advance(0.01, &free()).unwrap();
-    film
-}
-
 /// A sphere whose nodes at the far ends of its numbers a stretched spring joins.
 fn sphere_with_a_spring() -> FilmSimulation {
     let shell = icosphere(1, 0.5);
@@ -99,7 +75,7 @@ fn films() -> Vec<(&'static str, FilmSimulation)> {
         ("capsule", capsule_in_contact()),
         ("sphere", sphere(HeatTransfer::Coefficient(3.0))),
         ("isothermal sphere", sphere(HeatTransfer::Isothermal)),
-        ("pressed sheets", pressed_sheets()),
+        ("pressed sheets", pressed_sheets(MonitorSettings::FRAMES, 0.0)),
         ("sphere with a spring", sphere_with_a_spring()),
         ("vessel", inflated_vessel()),
     ]
@@ -217,7 +193,7 @@ fn looking_at_film_changes_nothing() {
 /// nothing meets.
 #[test]
 fn a_safe_step_lets_nothing_through() {
-    let film = pressed_sheets();
+    let film = pressed_sheets(MonitorSettings::FRAMES, 0.0);
     let (system, state) = (film.view().system, film.view().state);
     let model = system.contact.as_ref().unwrap();
     let gaps = |positions: &Field| {
