@@ -1,25 +1,19 @@
 //! The paper's capsule without and with contact: the same bits on every instruction set.
 
 use billow_solver::mechanics::forces::membrane::numerical_forces;
-use billow_solver::models::film::capsule;
 
-use crate::film_rig::{INFLOW, explicit, stowed, text};
+use crate::film_rig::{INFLOW, capsule_film, explicit, text};
 use crate::prelude::*;
-use crate::rig::paper_scene;
 
 /// The paper's capsule, stowed; in contact with friction and full stiffness, and with a monitor that checks every step
 /// of about half of the blocks.
 fn film(set: InstructionSet, in_contact: bool) -> FilmSimulation {
-    let mut scene = paper_scene();
-    scene.design.subdivisions = 3;
-    scene.film.compression = if in_contact { 1.0 } else { 0.01 };
-    scene.gravity = if in_contact { 0.0 } else { -9.8 };
-    let mut film = stowed(set, &scene, 0.45);
-    if in_contact {
-        let monitor = MonitorSettings { block: 50, dense_block_period: 2, seed: 1 };
-        film.contact = Some(FilmContact { friction: 0.2, monitor, ..FilmContact::default() });
-    }
-    capsule::start(&film, &[]).unwrap()
+    let monitor = MonitorSettings { block: 50, dense_block_period: 2, seed: 1 };
+    let contact = FilmContact { friction: 0.2, monitor, ..FilmContact::default() };
+    capsule_film(set, in_contact.then_some(contact), |scene| {
+        scene.film.compression = if in_contact { 1.0 } else { 0.01 };
+        scene.gravity = if in_contact { 0.0 } else { -9.8 };
+    })
 }
 
 #[test]

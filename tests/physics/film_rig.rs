@@ -6,7 +6,7 @@ use billow_solver::mechanics::forces::membrane::{
 };
 use billow_solver::models::film::capsule;
 use billow_solver::output::ledger::residuals;
-use billow_solver::scene::paper::{free_film, nitrogen_supply};
+use billow_solver::scene::paper::{self, free_film, nitrogen_supply};
 
 use crate::prelude::*;
 
@@ -21,6 +21,19 @@ pub const INFLOW: Phase = Phase {
 pub fn stowed(instruction_set: InstructionSet, scene: &Scene, cfl: f64) -> FilmScene {
     let shape = Shape::Stowed(scene.design.stowed_height);
     capsule::film_scene(instruction_set, scene, shape, cfl).expect("a foldable design").0
+}
+
+/// The paper's capsule at n 3, stowed with this contact, after a change of its scene.
+pub fn capsule_film(
+    set: InstructionSet,
+    contact: Option<FilmContact>,
+    change: impl FnOnce(&mut Scene),
+) -> FilmSimulation {
+    let mut scene = paper::empty_capsule(3, 0.5);
+    change(&mut scene);
+    let mut film = stowed(set, &scene, DEFAULT_CFL);
+    film.contact = contact;
+    capsule::start(&film, &[]).unwrap()
 }
 
 /// The model of a shell.

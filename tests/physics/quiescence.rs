@@ -1,20 +1,13 @@
 //! Quiescent film takes longer steps without a larger error, until activity is detected.
 
-use billow_solver::models::film::capsule;
-
-use crate::film_rig::{INFLOW, edited, explicit, resumed, stowed, text};
+use crate::film_rig::{INFLOW, capsule_film, edited, explicit, resumed, text};
 use crate::prelude::*;
-use crate::rig::paper_scene;
 
 /// The paper's capsule at n 3 with contact, stowed.
 fn capsule_in_contact() -> FilmSimulation {
-    let mut scene = paper_scene();
-    scene.design.subdivisions = 3;
     // A film that loses enough to come to rest within 0.4 s.
-    scene.film.numerical_damping = 0.1;
-    let mut film = stowed(InstructionSet::detect(), &scene, DEFAULT_CFL);
-    film.contact = Some(FilmContact::default());
-    capsule::start(&film, &[]).unwrap()
+    let contact = Some(FilmContact::default());
+    capsule_film(InstructionSet::detect(), contact, |scene| scene.film.numerical_damping = 0.1)
 }
 
 /// The film after this time (ms). With `never_quiescent`, activity is reported every millisecond.

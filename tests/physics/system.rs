@@ -8,20 +8,17 @@ use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::system::Evaluation;
 
 use crate::closures;
-use crate::film_rig::{INFLOW, free, pressed_sheets, still, stowed};
+use crate::film_rig::{INFLOW, capsule_film, free, pressed_sheets, still};
 use crate::prelude::*;
-use crate::rig::paper_scene;
 use crate::spring::Spring;
 
 /// The paper's capsule at n 3 with gas, contact, friction and adhesion, 15 ms after its release.
 fn capsule_in_contact() -> FilmSimulation {
-    let mut scene = paper_scene();
-    scene.design.subdivisions = 3;
-    scene.gravity = -9.8;
-    scene.film.numerical_damping = 0.05;
-    let mut film = stowed(InstructionSet::detect(), &scene, 0.45);
-    film.contact = Some(FilmContact { friction: 0.2, adhesion: 50.0, ..FilmContact::default() });
-    let mut film = capsule::start(&film, &[]).unwrap();
+    let contact = FilmContact { friction: 0.2, adhesion: 50.0, ..FilmContact::default() };
+    let mut film = capsule_film(InstructionSet::detect(), Some(contact), |scene| {
+        scene.gravity = -9.8;
+        scene.film.numerical_damping = 0.05;
+    });
     film.advance(0.015, &INFLOW).unwrap();
     assert!(film.view().state.contact.contacts.iter().any(|contact| contact.energy > 0.0));
     film

@@ -9,7 +9,6 @@ mod compare_and_answer;
 mod contact_scenes;
 mod doctor_and_rerun;
 mod edge_of_physics;
-mod export;
 mod film_study;
 mod fold;
 mod frames;
@@ -18,7 +17,6 @@ mod frames;
 mod harness {
     pub mod random;
 }
-mod instruction_sets;
 mod keys;
 mod mangled_studies;
 mod memory;

@@ -6,7 +6,7 @@ use std::fs;
 use billow_study::store::history_file;
 use serde_json::json;
 
-use crate::support::{TestFolder, grid, histories, ran, small_grid, stderr};
+use crate::support::{TestFolder, grid, histories, json_of, ran, small_grid, stderr};
 
 #[test]
 fn histories_agree_with_the_table() {
@@ -89,4 +89,22 @@ fn a_study_of_infeasible_points_says_so() {
         said.contains("--columns job,reason,nearest") && !said.contains("all 0 jobs"),
         "{said}"
     );
+}
+
+#[test]
+fn a_cube_holds_every_done_job() {
+    let folder = ran();
+    let rows = json_of(&folder, &["export", "results/grid", "--out", "grid.nc"]);
+    let row = &rows.as_array().unwrap()[0];
+    let all = folder.rows("results/grid");
+    let done = all.iter().filter(|row| row["status"] == "done").count();
+    assert_eq!((row["file"].as_str(), &row["points"]), (Some("grid.nc"), &json!(all.len())));
+    assert_eq!((&row["times"], &row["histories"]), (&json!(601), &json!(done)));
+    let file = fs::read(folder.path().join("grid.nc")).unwrap();
+    assert_eq!(&file[..8], b"\x89HDF\r\n\x1a\n");
+    // The same results and program give the same bytes.
+    folder.stdout(&["export", "results/grid", "--out", "again.h5"]);
+    assert_eq!(fs::read(folder.path().join("again.h5")).unwrap(), file);
+    let few = json_of(&folder, &["export", "--out", "few.nc", "--columns", "z_rim,volume"]);
+    assert!(few[0]["variables"].as_u64() < row["variables"].as_u64());
 }

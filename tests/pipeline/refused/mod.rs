@@ -187,6 +187,22 @@ fn every_mistake_gives_a_message_with_place_and_next_step() {
 }
 
 #[test]
+fn every_command_that_simulates_refuses_an_unknown_instruction_set() {
+    let folder = folder();
+    for arguments in [
+        &["run", "grid.json"][..],
+        &["run", "results/grid", "--again", "done"],
+        &["solve", "capsule.json"],
+    ] {
+        let output = folder.billow(arguments).env("BILLOW_SIMD", "neon").output().unwrap();
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(message.contains("BILLOW_SIMD = neon: unknown instruction set"), "{message}");
+        assert!(message.contains("allowed: scalar"), "{message}");
+    }
+}
+
+#[test]
 fn texts_of_the_user_are_cut_and_cannot_act_on_the_terminal() {
     /// Longest message about a long text, characters (chosen: a screen of 80 columns and 40 lines).
     const MAX_MESSAGE: usize = 3200;
