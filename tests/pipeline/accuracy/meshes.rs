@@ -65,27 +65,6 @@ fn outside_the_table_three_meshes_tell_their_error_and_two_do_not() {
     assert!(printed.contains("extrapolated from n 2 and 4"), "{printed}");
 }
 
-#[test]
-fn meshes_that_cannot_be_extrapolated_are_refused() {
-    let refused = |more: Value| {
-        let output = TestFolder::new(&film(&more)).run(&["plan", "grid.json"]);
-        assert_eq!(output.status.code(), Some(2));
-        stderr(&output)
-    };
-    assert!(refused(json!({"solver": {"meshes": [8, 4]}})).contains("ascending"));
-    assert!(refused(json!({"solver": {"meshes": [4]}})).contains("2 to 3 meshes"));
-    assert!(refused(json!({"solver": {"meshes": [4, 7]}})).contains("has a mesh that the table"));
-    let both = json!({"solver": {"meshes": [4, 8]}, "grid": {"subdivisions": [4, 8]}});
-    assert!(refused(both).contains("which another axis varies already"));
-    let search = json!({
-        "solver": {"meshes": [4, 8]}, "limits": {"verdict": "deployed"},
-        "grid": {"residual_gas_mass": {"bisect": ["0.01 g", "0.1 g"], "on": "safe"}}
-    });
-    assert!(refused(search).contains("a search judges single runs"));
-    let models = json!({"solver": {"meshes": [4, 8]}, "grid": {"model": ["film", "piston"]}});
-    assert!(refused(models).contains("the model piston has none"));
-}
-
 /// A chart of several meshes shows what the table has: extrapolated values, and outcomes and histories of the finest mesh.
 #[test]
 fn charts_and_comparisons_of_several_meshes_name_what_they_show() {
