@@ -8,7 +8,6 @@ mod checkpoints;
 mod compare_and_answer;
 mod contact_scenes;
 mod doctor_and_rerun;
-mod edge_of_physics;
 mod film_study;
 mod fold;
 mod frames;
