@@ -115,55 +115,6 @@ fn an_observer_can_stop_a_run() {
     assert_eq!(deployment.measures.verdict, None);
 }
 
-/// A change of a scene.
-type Change = fn(&mut Scene);
-
-#[test]
-fn invalid_piston_scenes_name_their_key() {
-    let changes: [(Change, &str); 23] = [
-        (|s| s.supports.clear(), "supports"),
-        (
-            |s| s.supports.push(Support { on: SupportLocation::TopRing, fix: "z".to_owned() }),
-            "supports[1].fix",
-        ),
-        (|s| s.supports[0].fix = "zx".to_owned(), "supports[0].fix"),
-        (|s| s.film.thickness = 0.0, "film.thickness"),
-        (|s| s.film.youngs_modulus = f64::NAN, "film.youngs_modulus"),
-        (|s| s.film.poisson_ratio = 0.6, "film.poisson_ratio"),
-        (|s| s.film.compression = 1.5, "film.compression"),
-        (|s| s.film.numerical_damping = -0.1, "film.numerical_damping"),
-        (|s| s.gas.species.cp = 200.0, "gas.species.cp"),
-        (|s| s.gas.initial_mass = -1.0, "gas.initial_mass"),
-        (|s| s.gas.windows[0].to = -1.0, "gas.windows[0].to"),
-        (|s| s.gas.windows[0].mass_flow_rate = -1.0, "gas.windows[0].rate"),
-        (|s| s.gas.windows[0].temperature = 0.0, "gas.windows[0].temperature"),
-        (
-            |s| s.gas.heat_transfer = HeatTransfer::Coefficient(-1.0),
-            "gas.heat_transfer.coefficient",
-        ),
-        (|s| s.gas.discharge_coefficient = 0.0, "gas.discharge_coefficient"),
-        (|s| s.gravity = f64::INFINITY, "gravity"),
-        (|s| s.release_time = -1.0, "release_time"),
-        (|s| s.solver.end_time = 0.0, "solver.end_time"),
-        (|s| s.solver.step_limit = 0, "solver.step_limit"),
-        (|s| s.solver.stepping = Stepping::Adaptive(1.0), "solver.stepping.adaptive"),
-        (|s| s.solver.stepping = Stepping::Fixed(0.0), "solver.stepping.fixed"),
-        (|s| s.outputs.sample_interval = 1e-12, "outputs.sample_interval"),
-        (|s| s.outputs.thresholds.deployed_volume = 0.0, "outputs.thresholds.deployed_volume"),
-    ];
-    for (change, expected) in changes {
-        let mut scene = injected();
-        change(&mut scene);
-        match models::solve(InstructionSet::detect(), &scene, &mut Unobserved) {
-            Err(SceneError::Invalid { key, problem }) => {
-                assert_eq!(key, expected, "{problem}");
-                assert!(!problem.is_empty());
-            }
-            other => panic!("{expected}: {other:?}"),
-        }
-    }
-}
-
 #[test]
 fn the_reference_height_rises_with_pressure() {
     let run = PistonRun::from_scene(&paper_scene()).unwrap();

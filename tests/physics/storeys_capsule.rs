@@ -1,7 +1,6 @@
-//! The paper's capsule as storeys: equal bits, invalid scenes. Film as the measure and the similarity of times are
+//! The paper's capsule as storeys: equal bits. Film as the measure and the similarity of times are
 //! reference cases.
 
-use billow_solver::models;
 use billow_solver::models::storeys::StoreysRun;
 use billow_solver::output::history::Sample;
 use billow_solver::scene::paper;
@@ -58,31 +57,4 @@ fn seeds_change_a_run_and_equal_seeds_do_not() {
     };
     assert_eq!(rim(3), rim(3));
     assert_ne!(rim(3), rim(4));
-}
-
-/// A change of a scene.
-type Change<'a> = &'a dyn Fn(&mut Scene);
-
-#[test]
-fn invalid_scenes_name_their_key() {
-    let refused = |change: Change<'_>| {
-        let mut scene = scene(0.1);
-        change(&mut scene);
-        let error = models::solve(InstructionSet::detect(), &scene, &mut Unobserved).unwrap_err();
-        assert_eq!(models::check(&scene).unwrap_err(), error);
-        error.to_string()
-    };
-    let cases: [(Change<'_>, &str); 4] = [
-        (&|scene| scene.supports.clear(), "supports"),
-        (&|scene| scene.supports[0].fix = "z".to_owned(), "supports[0]"),
-        (&|scene| scene.supports[0].on = SupportLocation::TopRing, "supports[0]"),
-        (&|scene| scene.solver.stepping = Stepping::Fixed(1e-5), "solver.stepping"),
-    ];
-    for (change, key) in cases {
-        let text = refused(change);
-        assert!(
-            text.contains(key) && text.contains("storeys") && text.contains("allowed"),
-            "{text}"
-        );
-    }
 }
