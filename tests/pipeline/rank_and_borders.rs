@@ -1,4 +1,4 @@
-//! Limits, replicates and searches: the answer of a run, `rank`, `borders`, and the notes of `plan`.
+//! Limits, replicates and searches: the answer of a run, `compare --rank`, `table --borders`, and the notes of `plan`.
 
 use serde_json::{Value, json};
 
@@ -25,8 +25,8 @@ fn the_answer_counts_points_and_names_the_gentler_strategy() {
     let said = folder.stdout(&["run", "grid.json", "-q"]);
     assert!(said.contains("deployed all runs of 6 of 6 points deploy"), "{said}");
     assert!(said.contains("(peak_vz < 41 m/s, deployed)"), "{said}");
-    assert!(said.contains("  pairs    rapid is "), "{said}");
-    assert!(said.contains("billow rank results/grid"), "{said}");
+    assert!(said.contains(" strategy: safe rapid 3 of 3 ("), "{said}");
+    assert!(said.contains("billow compare results/grid --rank"), "{said}");
     let answer = json_of(&folder, &["run", "grid.json", "-q"]);
     let rows = folder.rows("results/grid");
     assert_eq!(rows.len(), 24);
@@ -51,38 +51,45 @@ fn the_answer_counts_points_and_names_the_gentler_strategy() {
     assert_eq!(safe["mixed"], number(|runs| 0 < runs && runs < 4));
     assert!(number(|runs| runs == 4) > 0 && number(|runs| runs < 4) > 0, "{points:?}");
     assert_eq!(safe["missed"], json!({"peak_vz": number(|runs| runs < 4)}));
-    let pair = &answer["pairwise"]["pairs"][0];
-    assert_eq!((&pair["pairs"], &pair["measures"][0]["pairs"]), (&json!(3), &json!(3)));
+    let compared = answer["comparisons"].as_array().unwrap().iter();
+    let of_strategy = compared.clone().find(|by| by["parameter"] == "strategy").unwrap();
+    assert_eq!((compared.len(), &of_strategy["sets"]), (2, &json!(3)));
     assert_eq!(answer["points_with_runs"]["replicates"], json!(["thickness"]));
 
-    let ranked = json_of(&folder, &["rank", "grid.json"]);
+    let ranked = json_of(&folder, &["compare", "--rank", "grid.json"]);
     assert_eq!(ranked[0]["strategy"], "rapid");
+    let of_answer = |row: &Value, name: &str| {
+        let rows = of_strategy["values"].as_array().unwrap();
+        rows.iter().find(|other| other["strategy"] == row["strategy"]).unwrap()[name].clone()
+    };
     for (index, row) in ranked.as_array().unwrap().iter().enumerate() {
         let strategy = row["strategy"].as_str().unwrap();
         let of_rates = rates.map(|rate| safe_runs(strategy, rate));
         assert_eq!(row["rank"], index + 1);
-        assert_eq!((&row["points"], &row["judged_runs"]), (&json!(3), &json!(12)));
+        for name in ["rank", "safe", "smallest_margin", "peak_vz"] {
+            assert_eq!(of_answer(row, name), row[name], "the answer is the same comparison");
+        }
+        assert_eq!((&row["points"], &row["safe_runs_of"]), (&json!(3), &json!(12)));
         assert_eq!(row["safe_runs"], of_rates.iter().sum::<usize>());
         assert_eq!(row["safe"], of_rates.iter().filter(|runs| **runs == 4).count());
         let margins = rows.iter().filter(|run| run["strategy"] == strategy);
         let worst = margins.filter_map(|run| run["smallest_margin"].as_f64());
         assert_eq!(row["smallest_margin"].as_f64(), worst.reduce(f64::min));
     }
-    let every = json_of(&folder, &["rank", "--by", "strategy,mass_flow_rate", "--top", "4"]);
-    assert_eq!(every.as_array().unwrap().len(), 4);
-    let output = folder.run(&["rank", "--measures", "peak_vz"]);
+    let every = json_of(&folder, &["compare", "--rank", "--by", "strategy,mass_flow_rate"]);
+    assert_eq!(every.as_array().unwrap().len(), 6);
+    let output = folder.run(&["compare", "--rank", "--measures", "peak_vz"]);
     let said = stderr(&output);
     assert!(said.contains("over 3 sets of points that are equal in mass_flow_rate"), "{said}");
     for (arguments, expected) in [
         (["--by", "strateg"], "did you mean strategy?"),
         (["--measures", "final_pressure"], "smaller or larger is better"),
-        (["--top", "0"], "prints nothing"),
     ] {
-        let output = folder.run(&[&["rank"], &arguments[..]].concat());
+        let output = folder.run(&[&["compare", "--rank"], &arguments[..]].concat());
         assert_eq!(output.status.code(), Some(2));
         assert!(stderr(&output).contains(expected), "{}", stderr(&output));
     }
-    let refused = folder.run(&["borders"]);
+    let refused = folder.run(&["table", "--borders"]);
     assert!(stderr(&refused).contains("searches no border"), "{}", stderr(&refused));
 }
 
@@ -105,7 +112,7 @@ fn a_search_encloses_the_rate_at_which_a_limit_is_missed() {
     let status = json_of(&folder, &["status"]);
     assert_eq!((&status["points"], &status["pending"]), (&json!(rows.len()), &json!(0)));
 
-    let borders = json_of(&folder, &["borders"]);
+    let borders = json_of(&folder, &["table", "--borders"]);
     assert_eq!(borders.as_array().unwrap().len(), 2);
     let mut found = 0;
     for border in borders.as_array().unwrap().iter().filter(|row| row["outcome"] == "border") {
@@ -126,8 +133,10 @@ fn a_search_encloses_the_rate_at_which_a_limit_is_missed() {
         );
     }
     assert!(found > 0, "{borders}");
-    let few =
-        json_of(&folder, &["borders", "--where", "strategy == 'rapid' and outcome != 'open'"]);
+    let few = json_of(
+        &folder,
+        &["table", "--borders", "--where", "strategy == 'rapid' and outcome != 'open'"],
+    );
     assert_eq!(few.as_array().unwrap().len(), 1);
 
     // In the table the values of a search ascend, although they were planned in generations.
@@ -137,7 +146,7 @@ fn a_search_encloses_the_rate_at_which_a_limit_is_missed() {
     assert!(rates.is_sorted(), "{listed}");
 
     // Only the values that both strategies have are ranked: the five of the scan.
-    let ranked = json_of(&folder, &["rank"]);
+    let ranked = json_of(&folder, &["compare", "--rank"]);
     assert!(ranked.as_array().unwrap().iter().all(|row| row["points"] == 5), "{ranked}");
 }
 
@@ -161,14 +170,16 @@ fn other_limits_judge_the_stored_runs() {
     for row in judged.as_array().unwrap() {
         assert_eq!(row["safe"], row["peak_vz"].as_f64().unwrap() < 38.0, "{row}");
     }
-    let ranked = json_of(&folder, &[&["rank", "grid.json"], &set[..]].concat());
+    let ranked = json_of(&folder, &[&["compare", "--rank", "grid.json"], &set[..]].concat());
     let runs = ranked.as_array().unwrap().iter().map(|row| row["safe_runs"].as_u64().unwrap());
     assert_eq!(usize::try_from(runs.sum::<u64>()), Ok(safe(&rows, 38.0)));
     // A folder keeps the limits of its last run; a study that differs in more is named as such.
-    let kept = json_of(&folder, &["rank", "results/grid"]);
+    let kept = json_of(&folder, &["compare", "--rank", "results/grid"]);
     let runs = kept.as_array().unwrap().iter().map(|row| row["safe_runs"].as_u64().unwrap());
     assert_eq!(usize::try_from(runs.sum::<u64>()), Ok(safe(&rows, 41.0)));
-    let other = [&["rank", "grid.json", "--set", "film.youngs_modulus=3 GPa"], &set[..]].concat();
+    let other =
+        [&["compare", "--rank", "grid.json", "--set", "film.youngs_modulus=3 GPa"], &set[..]]
+            .concat();
     let said = stderr(&folder.run(&other));
     assert!(said.contains("is not the study of these rows"), "{said}");
 }

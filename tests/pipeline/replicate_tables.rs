@@ -141,7 +141,7 @@ fn compare_pairs_points_by_their_medians() {
     assert_eq!(summary[0]["pairs"], 3);
     let shown = folder.run(&by);
     let text = String::from_utf8(shown.stdout.clone()).unwrap();
-    assert!(text.contains(" of 3 (") && text.contains(" ["), "{text}");
+    assert!(text.contains(" of 4 (") && text.contains(" ["), "{text}");
     assert!(stderr(&shown).contains("larger smallest_margin"), "{}", stderr(&shown));
 }
 

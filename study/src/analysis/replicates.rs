@@ -93,9 +93,75 @@ impl Condensed {
         };
         Some([value(&self.least)?, value(&self.table)?, value(&self.largest)?])
     }
+
+    /// Whether all runs of a point deployed; `None` where a run has no verdict.
+    pub fn deploys(&self, point: usize) -> Option<bool> {
+        self.runs[point].all(|runs| runs.deployed)
+    }
+
+    /// Whether all runs of a point are safe; `None` where that cannot be said.
+    pub fn is_safe(&self, point: usize) -> Option<bool> {
+        self.runs[point].all(|runs| runs.safe)
+    }
+
+    /// The points that have a job.
+    pub fn feasible(&self) -> impl Iterator<Item = usize> {
+        let is_feasible = |point: &usize| self.table.status(*point) != Some(Status::Infeasible);
+        (0..self.runs.len()).filter(is_feasible)
+    }
+}
+
+/// A proportion over points as columns: k, n, and its interval. `what` the k do.
+pub fn proportion_columns(name: &str, what: &str, all: &[Proportion]) -> [Column; 4] {
+    let column = |end: &str, cell_type, meaning: String, cell: &dyn Fn(&Proportion) -> Value| {
+        let column =
+            Column::plain(&format!("{name}{end}"), cell_type, all.iter().map(cell).collect());
+        Column { unit: "1".to_owned(), meaning, ..column }
+    };
+    let end = |index: usize| {
+        move |one: &Proportion| match one.of {
+            0 => Value::Null,
+            _ => Value::Number(one.wilson()[index]),
+        }
+    };
+    let interval =
+        |end: &str| format!("{end} end of the 95 % interval (Wilson) of those that {what}");
+    let (met, of) = (format!("number of runs that {what}"), "number of runs that were judged");
+    [
+        column("", CellType::Integer, met, &|one| integer(one.met)),
+        column("_of", CellType::Integer, of.to_owned(), &|one| integer(one.of)),
+        column("_low", CellType::Number, interval("lower"), &end(0)),
+        column("_high", CellType::Number, interval("upper"), &end(1)),
+    ]
+}
+
+/// A number of things as a value.
+pub fn integer(number: usize) -> Value {
+    Value::Integer(i64::try_from(number).unwrap_or(i64::MAX))
 }
 
 impl Runs {
+    /// Whether all runs meet a condition: not if one does not, unknown while one is not judged.
+    fn all(&self, of: fn(&Self) -> Proportion) -> Option<bool> {
+        let judged = of(self);
+        if judged.met < judged.of {
+            return Some(false);
+        }
+        (judged.of > 0 && judged.of == self.finest.len()).then_some(true)
+    }
+
+    /// The smallest margin over the runs: the margin, its measure, the row of the run.
+    pub fn worst_margin(&self, table: &Table) -> Option<(f64, String, usize)> {
+        let column = table.column(DerivedColumn::SmallestMargin.name())?;
+        let names = table.column(DerivedColumn::SmallestMarginOf.name())?;
+        let margins = self.finest.iter().filter_map(|row| match column.cells[*row] {
+            Value::Number(margin) => Some((margin, *row)),
+            _ => None,
+        });
+        let (margin, row) = margins.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some((margin, names.cells[row].to_string(), row))
+    }
+
     /// The run with the smallest margin of the limits.
     fn least(&self, table: &Table) -> Option<usize> {
         let margin = table.column(DerivedColumn::SmallestMargin.name())?;

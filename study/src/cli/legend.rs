@@ -10,9 +10,6 @@ use crate::input::value::Value;
 use crate::store::table::NOT_DEPLOYED;
 use crate::store::table::Table;
 
-/// What is between a value and its mesh error.
-pub const PLUS_MINUS: &str = " ± ";
-
 /// What a row of points holds: runs that differ in `replicates`, on the meshes of the study (coarsest first; none where
 /// values are not extrapolated). `of_each` says what a cell has.
 pub fn points(
@@ -41,11 +38,6 @@ pub fn points(
         }
     }
     text
-}
-
-/// Whether a cell has a mesh error.
-pub fn has_mesh_error(cell: &Value) -> bool {
-    matches!(cell, Value::Text(text) if text.contains(PLUS_MINUS))
 }
 
 /// What the mesh errors that are `shown` are, and where they come from outside the table of mesh errors: of values that

@@ -15,10 +15,7 @@ use crate::platform::exit_code::{EXIT_CODES, Exit};
 use crate::platform::memory as process_memory;
 use crate::platform::output::Output;
 
-mod advise;
 mod answer;
-mod best;
-mod borders;
 mod changes;
 pub mod chart;
 mod compare;
@@ -41,7 +38,6 @@ mod plan;
 mod points;
 pub mod print;
 mod range;
-mod rank;
 pub mod results;
 mod run;
 mod solve;
@@ -73,10 +69,8 @@ pub struct Cli {
 pub enum Command {
     /// Compute one fold design: angles, lengths, and its crease pattern as files.
     Fold(fold::Args),
-    /// List the jobs of a study; run nothing.
+    /// List the jobs of a study, and the cheapest method that keeps an accuracy; run nothing.
     Plan(plan::Args),
-    /// Name the cheapest model and mesh that keep an error; run nothing.
-    Advise(advise::Args),
     /// Run the jobs of a study that are not finished.
     Run(run::Args),
     /// Give the unfinished jobs of a study to a cluster.
@@ -87,7 +81,7 @@ pub enum Command {
     Status(status::Args),
     /// Explain why a job ended as it did, or print what is stored of it.
     Job(job::Args),
-    /// Compare the values of one parameter, all other parameters being equal.
+    /// Compare the values of one parameter, all other parameters being equal, or rank them.
     Compare(compare::Args),
     /// Check a results folder, or repair it. Exit code 1 if something is broken.
     Doctor(doctor::Args),
@@ -97,10 +91,6 @@ pub enum Command {
     Solve(solve::Args),
     /// Print the summary table of a study's results.
     Table(table::Args),
-    /// Order strategies, or other values, by limits and measures.
-    Rank(rank::Args),
-    /// List the borders that the searches of a study found.
-    Borders(borders::Args),
     /// Draw charts of a study's results, as SVG and PNG.
     Chart(chart::Args),
     /// Write all results of a study into one file that xarray opens.
@@ -145,7 +135,6 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
     match command {
         Command::Fold(args) => fold::run(args, out),
         Command::Plan(args) => plan::run(args, out),
-        Command::Advise(args) => advise::run(args, out),
         Command::Run(args) => run::run(args, out),
         Command::Submit(args) => submit::run(args, out),
         Command::Merge(args) => merge::run(args, out),
@@ -156,8 +145,6 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
         Command::Frames(args) => frames::run(args, out),
         Command::Solve(args) => solve::run(args, out),
         Command::Table(args) => table::run(args, out),
-        Command::Rank(args) => rank::run(args, out),
-        Command::Borders(args) => borders::run(args, out),
         Command::Chart(args) => chart::run(args, out),
         Command::Export(args) => export::run(args, out),
         Command::Keys(args) => keys::run(args, out),
@@ -168,8 +155,8 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
 /// The commands in the groups in which a user thinks of them.
 const GROUPS: [(&str, &[&str]); 4] = [
     ("Design", &["fold", "solve", "keys"]),
-    ("Study", &["plan", "advise", "run", "submit", "merge", "status"]),
-    ("Answers", &["table", "compare", "rank", "borders", "chart", "frames", "job", "export"]),
+    ("Study", &["plan", "run", "submit", "merge", "status"]),
+    ("Answers", &["table", "compare", "chart", "frames", "job", "export"]),
     ("Care", &["doctor", "completions"]),
 ];
 

@@ -3,11 +3,19 @@
 
 use std::io::{self, IsTerminal, Write};
 
-use super::{Format, output_error};
-use crate::input::units::DisplayUnit;
+use super::{Format, output_error, range};
+use crate::accuracy::error_column;
 use crate::input::value::{Value, brief_number, json_value};
+use crate::job::proportion::Proportion;
+use crate::job::row::CellType;
 use crate::platform::error::Result;
+use crate::store::table::{Column, Table};
 use crate::study::Study;
+
+/// Most characters in a line.
+const MAX_LINE_WIDTH: usize = 120;
+/// Most values of a parameter that a line names. Chosen: more values need a chart.
+pub const MAX_VALUES: usize = 6;
 
 /// A line of an explanation: its topic and its text.
 pub(super) type TopicLine = (&'static str, String);
@@ -43,58 +51,90 @@ pub fn fraction(value: f64, format: Format) -> Value {
     }
 }
 
-/// A column of a list: its name, and the unit in which a table shows its numbers.
-#[derive(Clone)]
-pub struct Heading {
-    /// Name.
-    pub name: String,
-    /// Unit of its cells in a table.
-    pub unit: DisplayUnit,
+/// Ends of the names of columns that a table for a reader shows in the cell of another column: the smallest and the
+/// largest value, the number of all and the interval of a proportion, the mesh error.
+const PARTS: [&str; 6] = ["_least", "_largest", "_of", "_low", "_high", "_error"];
+
+/// Whether a reader sees a column in the cell of another one.
+pub fn is_part(table: &Table, column: &Column) -> bool {
+    let is_number = matches!(column.cell_type, CellType::Integer | CellType::Number);
+    let mut wholes = PARTS.iter().filter_map(|end| column.name.strip_suffix(end));
+    is_number && wholes.any(|whole| table.column(whole).is_some())
 }
 
-impl Heading {
-    /// A column without a unit, or one whose cells say it themselves.
-    pub fn plain(name: impl Into<String>) -> Self {
-        Self { name: name.into(), unit: DisplayUnit::si("") }
-    }
-
-    /// Characters that the column needs for its header.
-    pub fn width(&self) -> usize {
-        self.name.chars().count().max(self.symbol().chars().count())
-    }
-
-    /// The unit as the second line of the header has it; empty without a unit.
-    fn symbol(&self) -> String {
-        match self.unit.symbol() {
-            "" => String::new(),
-            symbol => format!("({symbol})"),
+/// The cells of a column as a reader sees them, in its unit: the first digits of a job id, a value with its range and
+/// its mesh error, k of n with its interval.
+pub fn shown_cells(table: &Table, column: &Column, rows: &[usize]) -> Vec<Value> {
+    let part = |end: &str| table.column(&format!("{}{end}", column.name));
+    let (least, largest, of) = (part("_least"), part("_largest"), part("_of"));
+    let error = part("_error").or_else(|| table.column(error_column(&column.name)?));
+    let number = |part: Option<&Column>, row: usize| match part?.cells[row] {
+        Value::Number(number) => Some(number),
+        _ => None,
+    };
+    let cell = |row: &usize| match &column.cells[*row] {
+        Value::Text(id) if column.name == "job" => Value::Text(id.chars().take(8).collect()),
+        Value::Integer(met) if let Some(Value::Integer(of)) = of.map(|of| &of.cells[*row]) => {
+            let [met, of] = [*met, *of].map(|number| usize::try_from(number).unwrap_or(0));
+            if of == 0 { Value::Null } else { Value::Text(Proportion { met, of }.to_string()) }
         }
+        Value::Number(value) => {
+            let ends = number(least, *row).zip(number(largest, *row));
+            match (ends, number(error, *row)) {
+                (None, None) => Value::Number(column.shown.number(*value)),
+                (ends, error) => Value::Text(range::text(*value, ends, error, &column.shown)),
+            }
+        }
+        other => column.shown.value(other),
+    };
+    rows.iter().map(cell).collect()
+}
+
+/// Characters that a column needs in a table.
+pub fn width(table: &Table, column: &Column) -> usize {
+    let rows: Vec<usize> = (0..column.cells.len()).collect();
+    let cells = shown_cells(table, column, &rows);
+    let widths = cells.iter().map(|value| cell(value).chars().count());
+    let header = column.name.chars().count().max(symbol(column).chars().count());
+    widths.max().unwrap_or(0).max(header)
+}
+
+/// The unit as the second line of the header has it; empty without a unit.
+fn symbol(column: &Column) -> String {
+    match column.shown.symbol() {
+        "" => String::new(),
+        symbol => format!("({symbol})"),
     }
 }
 
-/// Prints rows of SI values under their columns. A table shows them in the unit of each column, which
-/// stands below its name; csv and json are SI, as [`print_rows`].
+/// Prints some columns and rows of a table. A reader sees them in the unit of each column, which stands below its name,
+/// as [`shown_cells`]; csv and json have one SI number in each cell, as [`print_rows`].
 ///
 /// # Errors
 /// When the output cannot be written.
-pub fn print_quantities(
-    headings: &[Heading],
-    rows: &[Vec<Value>],
+pub fn print_table(
+    table: &Table,
+    columns: &[&Column],
+    rows: &[usize],
     format: Format,
     out: &mut dyn Write,
 ) -> Result<()> {
-    let names: Vec<&str> = headings.iter().map(|heading| heading.name.as_str()).collect();
+    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+    let by_column: Vec<Vec<Value>> = match format {
+        Format::Table => columns.iter().map(|column| shown_cells(table, column, rows)).collect(),
+        Format::Csv | Format::Json => {
+            let cells =
+                |column: &&Column| rows.iter().map(|row| column.cells[*row].clone()).collect();
+            columns.iter().map(cells).collect()
+        }
+    };
+    let row = |row: usize| by_column.iter().map(|cells| cells[row].clone()).collect();
+    let cells: Vec<Vec<Value>> = (0..rows.len()).map(row).collect();
     if format != Format::Table {
-        return print_rows(&names, rows, format, out);
+        return print_rows(&names, &cells, format, out);
     }
-    let shown: Vec<Vec<Value>> = rows
-        .iter()
-        .map(|row| {
-            row.iter().zip(headings).map(|(cell, heading)| heading.unit.value(cell)).collect()
-        })
-        .collect();
-    let units: Vec<String> = headings.iter().map(Heading::symbol).collect();
-    aligned(&names, &units, &shown, bold_headers(), out).map_err(output_error)
+    let units: Vec<String> = columns.iter().map(|column| symbol(column)).collect();
+    aligned(&names, &units, &cells, bold_headers(), out).map_err(output_error)
 }
 
 /// Prints rows under their columns.
@@ -247,6 +287,31 @@ fn json(columns: &[&str], rows: &[Vec<Value>], out: &mut dyn Write) -> io::Resul
     writeln!(out, "{}]", if rows.is_empty() { "" } else { "\n" })
 }
 
+/// The rows of a table as JSON objects, SI.
+pub fn json_objects(table: &Table) -> Vec<serde_json::Value> {
+    let object = |row: usize| {
+        let columns = table.columns.iter();
+        let keys = columns.map(|column| (column.name.clone(), json_value(&column.cells[row])));
+        serde_json::Value::Object(keys.collect())
+    };
+    (0..table.rows()).map(object).collect()
+}
+
+/// Breaks a line at its semicolons so that it fits beside `indent` characters.
+pub fn wrapped(line: &str, indent: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for part in line.split_inclusive("; ") {
+        let length = part.trim_end().chars().count();
+        match lines.last_mut() {
+            Some(last) if indent + last.chars().count() + length <= MAX_LINE_WIDTH => {
+                last.push_str(part);
+            }
+            _ => lines.push(part.to_owned()),
+        }
+    }
+    lines.iter().map(|line| line.trim_end().to_owned()).collect()
+}
+
 /// A number with its noun: "1 job", "2 jobs", "2 searches".
 pub fn count(number: usize, word: &str) -> String {
     let end = match number {
@@ -273,6 +338,7 @@ pub fn duration(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input::units::DisplayUnit;
 
     fn rows() -> Vec<Vec<Value>> {
         vec![
@@ -296,16 +362,41 @@ mod tests {
     }
 
     #[test]
-    fn a_table_has_the_units_below_the_names() {
-        let mut headings = ["N", "note", "x"].map(Heading::plain);
-        headings[2].unit = DisplayUnit::new("ms", "s").unwrap();
-        let mut out = Vec::new();
-        print_quantities(&headings, &rows(), Format::Table, &mut out).unwrap();
-        let expected = " N  note       x\n            (ms)\n 6  a, \"b\"   300\n12  -        NaN\n";
-        assert_eq!(String::from_utf8(out).unwrap(), expected);
-        let mut out = Vec::new();
-        print_quantities(&headings, &rows(), Format::Csv, &mut out).unwrap();
-        assert_eq!(String::from_utf8(out).unwrap(), printed(Format::Csv), "csv is SI");
+    fn a_table_has_units_below_the_names_and_ranges_errors_and_intervals_in_one_cell() {
+        let column = |name: &str, cells: [f64; 2]| {
+            Column::plain(name, CellType::Number, cells.map(Value::Number).to_vec())
+        };
+        let count = |name: &str, cells: [i64; 2]| {
+            Column::plain(name, CellType::Integer, cells.map(Value::Integer).to_vec())
+        };
+        let milliseconds = DisplayUnit::new("ms", "s").unwrap();
+        let table = Table {
+            columns: vec![
+                Column { shown: milliseconds, ..column("x", [0.3, 0.2]) },
+                column("x_least", [0.3, 0.1]),
+                column("x_largest", [0.3, 0.4]),
+                column("x_error", [0.01, 0.02]),
+                count("deployed", [3, 0]),
+                count("deployed_of", [4, 0]),
+            ],
+        };
+        let parts: Vec<bool> = table.columns.iter().map(|column| is_part(&table, column)).collect();
+        assert_eq!(parts, [false, true, true, true, false, true]);
+        let printed = |format| {
+            let mut out = Vec::new();
+            let columns = [&table.columns[0], &table.columns[4]];
+            print_table(&table, &columns, &[0, 1], format, &mut out).unwrap();
+            String::from_utf8(out).unwrap()
+        };
+        let expected = [
+            "x                      deployed",
+            "(ms)",
+            "300 ± 10               3 of 4 (30 to 95 %)",
+            "200 [100 to 400] ± 20  -",
+            "",
+        ];
+        assert_eq!(printed(Format::Table), expected.join("\n"));
+        assert_eq!(printed(Format::Csv), "x,deployed\n0.3,3\n0.2,0\n", "csv is SI");
     }
 
     #[test]

@@ -1,10 +1,10 @@
 //! The values of several runs in one cell: "12.3 [11.9 to 13.1]".
 
-use super::legend::PLUS_MINUS;
-use crate::analysis::statistics::Spread;
 use crate::input::units::DisplayUnit;
 use crate::input::value::short_number;
 
+/// What is between a value and its mesh error.
+pub const PLUS_MINUS: &str = " ± ";
 /// Significant digits of a cell, at least. More are shown where the range would vanish otherwise.
 const MIN_DIGITS: usize = 3;
 /// Significant digits of a cell, at most.
@@ -16,28 +16,38 @@ const DIGITS_ALONE: usize = 4;
 const MAX_DECIMALS: usize = 9;
 
 /// A number with this many significant digits.
-pub fn rounded(number: f64, digits: usize) -> f64 {
+fn rounded(number: f64, digits: usize) -> f64 {
     format!("{number:.*e}", digits.saturating_sub(1)).parse().unwrap_or(number)
 }
 
-/// Median, smallest and largest value in a unit, without the unit: "12.3 [11.9 to 13.1]". Equal values are
-/// one number. `runs` is the number of runs that could have a value: where fewer have one, the cell says
-/// how many.
-pub fn text(spread: &Spread, unit: &DisplayUnit, runs: usize) -> String {
-    let numbers = [spread.median, spread.least, spread.largest].map(|number| unit.number(number));
-    let with = |digits| numbers.map(|number| short_number(rounded(number, digits)));
-    let differing =
-        (MIN_DIGITS..=MAX_DIGITS).map(with).find(|[_, least, largest]| least != largest);
-    let text = match differing {
-        Some([median, least, largest]) => format!("{median} [{least} to {largest}]"),
-        None => short_number(rounded(numbers[0], DIGITS_ALONE)),
+/// A value in a unit, without the unit, with its smallest and largest value and its mesh error: "12.3 [11.9 to 13.1] ±
+/// 0.4". Equal values are one number.
+pub fn text(
+    value: f64,
+    ends: Option<(f64, f64)>,
+    error: Option<f64>,
+    unit: &DisplayUnit,
+) -> String {
+    let with = |digits| {
+        let (least, largest) = ends?;
+        let text = |number| short_number(rounded(unit.number(number), digits));
+        let [value, least, largest] = [value, least, largest].map(text);
+        (least != largest).then(|| format!("{value} [{least} to {largest}]"))
     };
-    if spread.count < runs { format!("{text} ({} of {runs})", spread.count) } else { text }
+    let range = (MIN_DIGITS..=MAX_DIGITS).find_map(with);
+    match (range, error.map(|error| with_error(value, error, unit))) {
+        (Some(range), Some(alone)) => match alone.split_once(PLUS_MINUS) {
+            Some((_, error)) => format!("{range}{PLUS_MINUS}{error}"),
+            None => range,
+        },
+        (Some(text), None) | (None, Some(text)) => text,
+        (None, None) => short_number(rounded(unit.number(value), DIGITS_ALONE)),
+    }
 }
 
 /// A value with its error in a unit, without the unit: "0.1847 ± 0.0091". The error has two digits, the value as
 /// many decimals.
-pub fn with_error(value: f64, error: f64, unit: &DisplayUnit) -> String {
+fn with_error(value: f64, error: f64, unit: &DisplayUnit) -> String {
     let shown = unit.number(value);
     // A unit may have an offset, as °C has; a difference has none.
     let error = (unit.number(value + error) - shown).abs();
@@ -64,18 +74,15 @@ pub fn with_error(value: f64, error: f64, unit: &DisplayUnit) -> String {
 mod tests {
     use super::*;
 
-    fn shown(numbers: &[f64], runs: usize) -> String {
-        let milliseconds = DisplayUnit::new("ms", "s").unwrap();
-        text(&Spread::of(numbers.iter().copied()).unwrap(), &milliseconds, runs)
-    }
-
     #[test]
     fn a_range_has_the_digits_that_show_it() {
-        assert_eq!(shown(&[0.143_21, 0.138_77, 0.150_02], 3), "143 [139 to 150]");
-        assert_eq!(shown(&[0.143_21, 0.143_25], 2), "143.23 [143.21 to 143.25]");
-        assert_eq!(shown(&[0.143_21, 0.143_21], 2), "143.2");
-        assert_eq!(shown(&[0.1, 0.2], 5), "150 [100 to 200] (2 of 5)");
-        assert_eq!(shown(&[-0.0021], 1), "-2.1");
+        let milliseconds = DisplayUnit::new("ms", "s").unwrap();
+        let shown =
+            |value, least, largest| text(value, Some((least, largest)), None, &milliseconds);
+        assert_eq!(shown(0.143_21, 0.138_77, 0.150_02), "143 [139 to 150]");
+        assert_eq!(shown(0.143_23, 0.143_21, 0.143_25), "143.23 [143.21 to 143.25]");
+        assert_eq!(shown(0.143_21, 0.143_21, 0.143_21), "143.2");
+        assert_eq!(text(-0.0021, None, None, &milliseconds), "-2.1");
     }
 
     #[test]

@@ -1,43 +1,40 @@
 //! The answer of a study, from its table: how many jobs deploy, which points are safe, which job is fastest,
-//! which has the largest impact, how far the results can be trusted, the effect of each parameter with all
-//! others equal, which strategy is gentler, and where the borders of a search are.
+//! which has the largest impact, how far the results can be trusted, which value of each parameter is better with all
+//! others equal, and where the borders of a search are.
 
 use std::collections::BTreeSet;
 
 use billow_solver::output::measures::Verdict;
-use serde::{Deserialize, Serialize};
 
 use crate::accuracy::error_column;
 use crate::analysis::compare;
-use crate::analysis::replicates::{fixed, point_key, source};
+use crate::analysis::ranking::{DEFAULT_MEASURES, Ranking, RankingInput};
+use crate::analysis::replicates::{Condensed, fixed, point_key, source};
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::point::Point;
+use crate::job::result_limit::ResultLimit;
 use crate::job::row::{ColumnId, Counts, HEADLINE};
 use crate::store::stored::Stored;
 use crate::store::table::Table;
+use crate::study::{Study, Zipped};
 
-mod effects;
-mod medians;
-mod pairwise;
 mod points;
 mod safety;
 mod searches;
 mod trust;
 
-pub use effects::{Effect, Effects, MeasureEffect};
-pub use medians::Extremes;
-pub(super) use medians::{Set, block};
-pub use pairwise::{Loads, MeasureVersus, Versus};
-pub(super) use points::worst_margin;
-pub use points::{Depends, PointCounts, Points};
-pub use safety::{PointMargin, SafeBy, SafeCounts, SafeValue, Safety};
+pub use points::{PointCounts, VerdictSensitivity};
+pub use safety::{PointMargin, SafeCounts, Safety};
 pub use searches::{Found, Searches};
 pub use trust::Trust;
 
-/// The answer of a study. It is stored without `searches`.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+/// Most values of a parameter that the answer compares. Chosen: more are a chart, or `billow compare --rank`.
+const MAX_COMPARED_VALUES: usize = 64;
+
+/// The answer of a study.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Answer {
     /// The question, as the study file has it.
     pub question: String,
@@ -54,25 +51,20 @@ pub struct Answer {
     /// Largest film stress of a done job over Young's modulus: the strain for which the linear material
     /// model is used.
     pub largest_strain: f64,
-    /// Effects of the parameters that vary.
-    pub effects: Effects,
+    /// The values of each parameter that varies, ranked with all other parameters equal, or why they cannot be.
+    pub comparisons: Vec<(String, Result<Ranking, String>)>,
     /// Numbers of points, in a study with replicates.
     pub points: Option<PointCounts>,
     /// Points whose verdict depends on a numerical choice.
-    pub depends: Option<Depends>,
+    pub sensitivity: Option<VerdictSensitivity>,
     /// Safe points, in a study with limits.
     pub safety: Option<Safety>,
-    /// The parameter whose values are compared in pairs: the strategy, or the first one with words.
-    pub choice: Option<String>,
-    /// Each pair of its values.
-    pub pairwise: Vec<Versus>,
     /// What the searches of borders found.
-    #[serde(skip)]
     pub searches: Option<Searches>,
 }
 
 /// The job with the smallest or largest value of a measure.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Extreme {
     /// Id of the job.
     pub job: String,
@@ -100,19 +92,11 @@ impl Answer {
         answer.largest_strain = largest_strain(stored);
         let rows: Vec<usize> = (0..table.rows()).collect();
         let (study, replicates) = (&stored.study, stored.study.replicates());
-        let zipped = |name: &str| study.zipped_with(name);
-        answer.effects = Effects::of(table, &rows, &replicates, &HEADLINE, &zipped);
-        let jobs = Points::of(table, &table.one_row_per_job(&rows), &replicates);
+        let jobs = Condensed::of(table, &table.one_row_per_job(&rows), &replicates);
         answer.points = (!replicates.is_empty()).then(|| PointCounts::of(&jobs, &replicates));
-        answer.depends = Depends::of(table, &jobs);
-        let choice = pairwise::choice(table, &rows);
-        let choice = choice.filter(|column| !replicates.contains(&column.name));
-        answer.safety = Safety::of(table, study.result_limits(), &rows, &replicates, choice);
-        if let Some(choice) = choice {
-            let points = Points::of(table, &rows, &replicates);
-            answer.choice = Some(choice.name.clone());
-            answer.pairwise = pairwise::pairwise(&points, &choice.name, &zipped);
-        }
+        answer.sensitivity = VerdictSensitivity::of(table, &jobs);
+        answer.safety = Safety::of(table, study.result_limits(), &rows, &replicates);
+        answer.comparisons = comparisons(table, &rows, study);
         answer.searches = Searches::of(stored, table);
         answer
     }
@@ -147,6 +131,55 @@ impl Answer {
         answer.trust = trust::trust(table, &rows);
         answer
     }
+}
+
+/// The values of each parameter that varies and repeats no point.
+fn comparisons(
+    table: &Table,
+    rows: &[usize],
+    study: &Study,
+) -> Vec<(String, Result<Ranking, String>)> {
+    let replicates = study.replicates();
+    let varied = table.parameters().filter(|column| !replicates.contains(&column.name));
+    let compared = varied.filter_map(|column| {
+        let values = compare::values(column, rows).len();
+        let name = column.name.clone();
+        let limits = (study.result_limits(), replicates.as_slice());
+        let ranking = match values {
+            0 | 1 => return None,
+            2..=MAX_COMPARED_VALUES => {
+                comparison(table, rows, &name, limits, &|name| study.zipped_with(name))
+            }
+            _ => Err(format!("{values} values: billow compare --rank --by {name}")),
+        };
+        Some((name, ranking))
+    });
+    compared.collect()
+}
+
+/// The values of one parameter; why they cannot be ranked.
+fn comparison(
+    table: &Table,
+    rows: &[usize],
+    by: &str,
+    (limits, replicates): (&[ResultLimit], &[String]),
+    zipped: &dyn Fn(&str) -> Vec<Zipped>,
+) -> Result<Ranking, String> {
+    let by = by.to_owned();
+    let ranking = Ranking::of(&RankingInput {
+        table,
+        rows,
+        by: std::slice::from_ref(&by),
+        replicates,
+        limits,
+        measures: &DEFAULT_MEASURES,
+        zipped,
+        dominance: false,
+    })?;
+    if ranking.is_one_job {
+        return Err(format!("points that differ in {by} alone are one job"));
+    }
+    Ok(ranking)
 }
 
 /// The first done job with the best value of a measure.

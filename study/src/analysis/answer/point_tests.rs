@@ -1,6 +1,5 @@
 //! The answer of points with several runs.
 
-use super::pairwise::pairwise;
 use super::*;
 use crate::job::proportion::Proportion;
 use crate::job::result_limit::{Condition, ResultLimit};
@@ -42,34 +41,35 @@ fn runs() -> Vec<Run> {
     runs
 }
 
-fn points(table: &Table) -> Points {
+fn points(table: &Table) -> Condensed {
     let rows: Vec<usize> = (0..table.rows()).collect();
-    Points::of(table, &rows, &["seed".to_owned()])
+    Condensed::of(table, &rows, &["seed".to_owned()])
 }
 
 #[test]
-fn seeds_do_not_multiply_pairs_and_only_one_deploys_is_said() {
-    let table = table(&runs());
-    let found = pairwise(&points(&table), "strategy", &|_| Vec::new());
-    let [versus] = found.as_slice() else { panic!("{found:?}") };
-    let text = |text: &str| Value::Text(text.to_owned());
-    assert_eq!((&versus.value, &versus.than), (&text("rapid"), &text("late")), "the gentler first");
-    assert_eq!((versus.pairs, versus.loads), (2, Loads::Gentler));
-    assert_eq!((versus.only_value, versus.only_than), (0, 1), "one seed of rapid stalls at mass 2");
-    let measures: Vec<_> = versus.measures.iter().map(|m| (m.measure, m.lower, m.pairs)).collect();
-    assert_eq!(measures, [(ColumnId::PeakVz, 2, 2), (ColumnId::PeakKineticEnergy, 2, 2)]);
-    assert_eq!(versus.measures[0].ratio, Some(0.5));
-}
-
-#[test]
-fn loads_that_differ_in_their_order_are_mixed_and_equal_ones_are_equal() {
-    let loads = |change: fn(&mut Run)| {
-        let mut runs = runs();
-        runs.iter_mut().for_each(change);
-        pairwise(&points(&table(&runs)), "strategy", &|_| Vec::new()).remove(0).loads
+fn seeds_do_not_multiply_pairs_and_a_value_is_the_best_where_all_its_runs_deploy() {
+    let compared = |runs: &[Run]| {
+        let table = table(runs);
+        let rows: Vec<usize> = (0..table.rows()).collect();
+        let seed = ["seed".to_owned()];
+        comparison(&table, &rows, "strategy", (&[], &seed), &|_| Vec::new()).unwrap()
     };
-    assert_eq!(loads(|run| run.4 = if run.0 == "late" { 1.0 } else { 2.0 }), Loads::Mixed);
-    assert_eq!(loads(|run| (run.3, run.4) = (1.0, 1.0)), Loads::Equal);
+    let mut runs = runs();
+    let ranking = compared(&runs);
+    let order: Vec<String> = ranking.candidates.iter().map(|c| c.values[0].to_string()).collect();
+    assert_eq!(order, ["late", "rapid"], "one seed of rapid stalls at mass 2");
+    assert_eq!(
+        ranking.candidates.iter().map(|c| (c.deployed, c.points)).collect::<Vec<_>>(),
+        [(2, 2), (1, 2)]
+    );
+    let tally = ranking.measures[0].against_best[1].as_ref().unwrap();
+    assert_eq!((ranking.measures[0].best, tally.pairs()), (Some(0), 2));
+    assert_eq!((tally.count(compare::Better::Other), tally.ratio.unwrap().median), (2, 0.5));
+    runs.iter_mut().for_each(|run| run.5 = "deployed");
+    assert_eq!(compared(&runs).measures[0].best, Some(0));
+    assert_eq!(compared(&runs).candidates[0].values[0].to_string(), "rapid", "the gentler one");
+    runs.iter_mut().for_each(|run| run.3 = 1.0);
+    assert_eq!(compared(&runs).measures[0].equal, [true, true]);
 }
 
 #[test]
@@ -84,12 +84,12 @@ fn a_point_counts_as_deployed_or_safe_if_all_its_runs_are() {
     let seed = ["seed".to_owned()];
     let counts = PointCounts::of(&points(&table), &seed);
     assert_eq!((counts.points, counts.deployed, counts.mixed, counts.never), (4, 3, 1, 0));
-    let depends = Depends::of(&table, &points(&table)).unwrap();
+    let depends = VerdictSensitivity::of(&table, &points(&table)).unwrap();
     assert_eq!((depends.points, depends.of), (1, 4));
     assert_eq!(depends.choices, [("seed".to_owned(), 1)]);
 
     let rows: Vec<usize> = (0..table.rows()).collect();
-    let safety = Safety::of(&table, &limits, &rows, &seed, table.column("strategy")).unwrap();
+    let safety = Safety::of(&table, &limits, &rows, &seed).unwrap();
     let expected = SafeCounts { points: 4, safe: 2, mixed: 1, not_judged: 0 };
     assert_eq!((safety.counts, safety.limits[0].as_str()), (expected, "peak_vz < 25 m/s"));
     assert_eq!(safety.missed, [("peak_vz".to_owned(), 1), ("verdict".to_owned(), 1)]);
@@ -97,8 +97,6 @@ fn a_point_counts_as_deployed_or_safe_if_all_its_runs_are() {
     let nearest = safety.nearest.unwrap();
     assert_eq!(nearest.point.parameters[0].1, Value::Text("late".to_owned()));
     assert!((nearest.point.value - (25.0 - 20.02) / 25.0).abs() < 1e-12);
-    let safest = safety.by.unwrap().values[0].safest.clone().unwrap();
-    assert!((safest.point.value - (25.0 - 10.01) / 25.0).abs() < 1e-12, "{safest:?}");
 }
 
 #[test]
@@ -109,14 +107,9 @@ fn a_run_that_cannot_be_trusted_leaves_the_median_to_the_others() {
     let name = ColumnId::NumericallyDamped.name().to_owned();
     table.columns.push(Column { name, cell_type: CellType::Bool, cells: damped, ..column });
     let points = points(&table);
-    let first = &points.condensed;
-    assert_eq!(first.spread("peak_vz", 0), Some([9.99; 3]), "the seed that is trusted");
-    assert_eq!(
-        points.condensed.runs[0].deployed,
-        Proportion { met: 2, of: 2 },
-        "its verdict counts"
-    );
-    assert!(points.trusted.iter().all(|trusted| *trusted));
+    assert_eq!(points.spread("peak_vz", 0), Some([9.99; 3]), "the seed that is trusted");
+    assert_eq!(points.runs[0].deployed, Proportion { met: 2, of: 2 }, "its verdict counts");
+    assert!(points.runs.iter().all(|runs| runs.has_trusted));
 }
 
 #[test]
@@ -127,12 +120,11 @@ fn overlapping_ranges_are_equal_in_pairs_and_in_the_best_values() {
             (1_i64..).zip(speeds).map(move |(seed, v)| (strategy, 1.0, seed, v, v, "deployed"))
         });
         let table = table(&runs.collect::<Vec<_>>());
-        let pair = pairwise(&points(&table), "strategy", &|_| Vec::new()).remove(0);
-        let (rows, measures) = ((0..table.rows()).collect::<Vec<_>>(), [ColumnId::PeakVz]);
-        let effects = Effects::of(&table, &rows, &["seed".to_owned()], &measures, &|_| Vec::new());
-        (pair.measures[0].ties, effects.effects[0].measures[0].extremes.clone())
+        let (rows, seed) = ((0..table.rows()).collect::<Vec<_>>(), ["seed".to_owned()]);
+        let ranking = comparison(&table, &rows, "strategy", (&[], &seed), &|_| Vec::new()).unwrap();
+        let tally = ranking.measures[0].against_best[1].clone().unwrap();
+        (tally.count(compare::Better::Tie), ranking.measures[0].equal[1])
     };
-    assert_eq!(compared([9.5, 15.0]), (1, Extremes::Equal));
-    let judged = Extremes::Judged { best: vec![0], worst: vec![1] };
-    assert_eq!(compared([11.0, 15.0]), (0, judged));
+    assert_eq!(compared([9.5, 15.0]), (1, true));
+    assert_eq!(compared([11.0, 15.0]), (0, false));
 }

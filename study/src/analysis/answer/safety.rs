@@ -1,17 +1,14 @@
 //! Which points are safe: all limits of the study met in all their runs.
 
-use serde::{Deserialize, Serialize};
-
 use super::Extreme;
-use super::points::{Points, worst_margin};
-use crate::analysis::compare::{self, canonical};
+use crate::analysis::replicates::Condensed;
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::result_limit::ResultLimit;
-use crate::store::table::{Column, Table};
+use crate::store::table::Table;
 
 /// The points by the limits of the study.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Safety {
     /// The limits, as in `peak_vz < 25 m/s`.
     pub limits: Vec<String>,
@@ -21,12 +18,10 @@ pub struct Safety {
     pub nearest: Option<PointMargin>,
     /// For each missed limit its measure and the number of points that miss it, the most frequent first.
     pub missed: Vec<(String, usize)>,
-    /// The parameter by whose values the points are counted again.
-    pub by: Option<SafeBy>,
 }
 
 /// Numbers of points with a job.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SafeCounts {
     /// All.
     pub points: usize,
@@ -38,30 +33,8 @@ pub struct SafeCounts {
     pub not_judged: usize,
 }
 
-/// The points by value of a parameter.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SafeBy {
-    /// The parameter.
-    pub parameter: String,
-    /// Unit in which its values are shown.
-    pub shown: DisplayUnit,
-    /// One entry per value.
-    pub values: Vec<SafeValue>,
-}
-
-/// The points with one value of a parameter.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SafeValue {
-    /// The value.
-    pub value: Value,
-    /// The numbers of points.
-    pub counts: SafeCounts,
-    /// The point with the largest of the smallest margins.
-    pub safest: Option<PointMargin>,
-}
-
 /// A point and its smallest margin.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PointMargin {
     /// The run with the smallest margin, and the parameters of the point; `value` is the margin.
     pub point: Extreme,
@@ -76,19 +49,18 @@ impl Safety {
         limits: &[ResultLimit],
         rows: &[usize],
         replicates: &[String],
-        by: Option<&Column>,
     ) -> Option<Self> {
         if limits.is_empty() {
             return None;
         }
-        let points = Points::of(table, &table.one_row_per_job(rows), replicates);
+        let points = Condensed::of(table, &table.one_row_per_job(rows), replicates);
         let missed = |limit: &ResultLimit| {
             let is_missed = |row: &usize| {
                 let value = table.value(limit.measure, *row).unwrap_or(&Value::Null);
                 let judged = table.status(*row).and_then(|status| limit.judge(status, value));
                 judged.is_some_and(|judged| !judged.met)
             };
-            points.condensed.runs.iter().filter(|runs| runs.finest.iter().any(is_missed)).count()
+            points.runs.iter().filter(|runs| runs.finest.iter().any(is_missed)).count()
         };
         let missed = limits.iter().map(|limit| (limit.measure.name().to_owned(), missed(limit)));
         let mut missed: Vec<(String, usize)> = missed.filter(|(_, points)| *points > 0).collect();
@@ -103,38 +75,18 @@ impl Safety {
             counts: SafeCounts::of(&points, &all),
             nearest: nearest.or_else(|| safest(table, &points, &all)),
             missed,
-            by: by.map(|column| SafeBy::of(table, rows, replicates, column)),
         })
-    }
-}
-
-impl SafeBy {
-    fn of(table: &Table, rows: &[usize], replicates: &[String], column: &Column) -> Self {
-        let value = |value: Value| {
-            let key = canonical(&value);
-            let of_value = rows.iter().filter(|row| canonical(&column.cells[**row]) == key);
-            let of_value: Vec<usize> = of_value.copied().collect();
-            let points = Points::of(table, &table.one_row_per_job(&of_value), replicates);
-            let all: Vec<usize> = points.feasible().collect();
-            let counts = SafeCounts::of(&points, &all);
-            SafeValue { value, counts, safest: safest(table, &points, &all) }
-        };
-        Self {
-            parameter: column.name.clone(),
-            shown: column.shown.clone(),
-            values: compare::values(column, rows).into_iter().map(value).collect(),
-        }
     }
 }
 
 impl SafeCounts {
     /// Counts some points.
-    fn of(points: &Points, some: &[usize]) -> Self {
+    fn of(points: &Condensed, some: &[usize]) -> Self {
         let mut counts = Self { points: some.len(), ..Self::default() };
         for point in some {
             match points.is_safe(*point) {
                 Some(true) => counts.safe += 1,
-                _ if points.condensed.runs[*point].safe.is_mixed() => counts.mixed += 1,
+                _ if points.runs[*point].safe.is_mixed() => counts.mixed += 1,
                 Some(false) => {}
                 None => counts.not_judged += 1,
             }
@@ -144,7 +96,7 @@ impl SafeCounts {
 }
 
 /// The point with the largest of the smallest margins; of points with a run that cannot be judged, none.
-fn safest(table: &Table, points: &Points, some: &[usize]) -> Option<PointMargin> {
+fn safest(table: &Table, points: &Condensed, some: &[usize]) -> Option<PointMargin> {
     let judged = some.iter().copied().filter(|point| points.is_safe(*point).is_some());
     let mut margins = judged.filter_map(|point| margin(table, points, point));
     let first = margins.next()?;
@@ -157,9 +109,9 @@ fn smaller(a: PointMargin, b: PointMargin) -> PointMargin {
 }
 
 /// The smallest margin of a point.
-fn margin(table: &Table, points: &Points, point: usize) -> Option<PointMargin> {
-    let (value, measure, row) = worst_margin(table, &points.condensed.runs[point])?;
-    let parameters = points.condensed.table.parameters();
+fn margin(table: &Table, points: &Condensed, point: usize) -> Option<PointMargin> {
+    let (value, measure, row) = points.runs[point].worst_margin(table)?;
+    let parameters = points.table.parameters();
     let parameters = parameters
         .map(|column| (column.name.clone(), column.cells[point].clone(), column.shown.clone()));
     let point = Extreme {

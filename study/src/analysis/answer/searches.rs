@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
-use crate::job::row::{CellType, DerivedColumn};
+use crate::job::Status;
+use crate::job::row::{CellType, ColumnId, DerivedColumn};
 use crate::store::stored::Stored;
-use crate::store::table::Table;
+use crate::store::table::{Column, Table};
 use crate::study::{Border, Criterion, Level, SearchResult};
 
 /// The searches of a study.
@@ -67,6 +68,76 @@ impl Searches {
             replicates: stored.study.replicate_count(),
             found: found.collect(),
         })
+    }
+
+    /// The searches as a table, one row per search: an empty column, the parameters, the status, then what was found.
+    /// `table` is that of the study.
+    pub fn table(&self, table: &Table) -> Table {
+        let column = |name: &str, cell_type, of: &dyn Fn(&Found) -> Value| {
+            Column::plain(name, cell_type, self.found.iter().map(of).collect())
+        };
+        let text = |text: &str| Value::Text(text.to_owned());
+        let number = |number: usize| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));
+        let value = |name: &str, of: &dyn Fn(&Found) -> Option<f64>| Column {
+            unit: self.unit.clone(),
+            shown: self.shown.clone(),
+            ..column(name, CellType::Number, &|found| of(found).map_or(Value::Null, Value::Number))
+        };
+        let border = |found: &Found| match found.border.outcome {
+            SearchResult::Border { low, high, .. } => Some([low, high]),
+            _ => None,
+        };
+        let parameters = self.found.first().map_or(&[][..], |first| first.parameters.as_slice());
+        let parameters = parameters.iter().enumerate().filter_map(|(index, (name, ..))| {
+            let known = table.parameters().find(|column| column.name == *name)?;
+            let cells = self.found.iter().map(|found| found.parameters[index].1.clone());
+            Some(known.like(name, cells.collect()))
+        });
+        let mut columns = vec![column("search", CellType::Text, &|_| Value::Null)];
+        columns.extend(parameters);
+        // A column with this name ends the parameters of a table.
+        columns.push(column(ColumnId::Status.name(), CellType::Text, &|found| {
+            let open = found.border.outcome == SearchResult::Open;
+            text(if open { Status::Pending.name() } else { Status::Done.name() })
+        }));
+        columns.extend([
+            column("outcome", CellType::Text, &|found| text(found.outcome())),
+            value("low", &|found| border(found).map(|ends| ends[0])),
+            value("high", &|found| border(found).map(|ends| ends[1])),
+            column("below", CellType::Text, &|found| {
+                found
+                    .met_below()
+                    .map_or(Value::Null, |met| text(if met { "met" } else { "not met" }))
+            }),
+            column("limit", CellType::Text, &|found| {
+                found.limit.as_ref().map_or(Value::Null, |limit| text(limit))
+            }),
+            value("from", &|found| found.decided(self.replicates).map(|ends| ends[0])),
+            value("to", &|found| found.decided(self.replicates).map(|ends| ends[1])),
+            column("changes", CellType::Text, &|found| self.changes(found)),
+            column("values", CellType::Integer, &|found| number(found.border.levels.len())),
+            column("not_decided", CellType::Integer, &|found| {
+                number(found.undecided(self.replicates).len())
+            }),
+            column("runs", CellType::Integer, &|found| {
+                number(found.sum(|level| level.met.of + level.not_judged))
+            }),
+            column("not_judged", CellType::Integer, &|found| {
+                number(found.sum(|level| level.not_judged))
+            }),
+            column("open", CellType::Integer, &|found| number(found.sum(|level| level.open))),
+        ]);
+        Table { columns }
+    }
+
+    /// The intervals in which the outcome changes, where there are several.
+    fn changes(&self, found: &Found) -> Value {
+        let SearchResult::NotMonotone(changes) = &found.border.outcome else { return Value::Null };
+        let text = |[low, high]: &[f64; 2]| {
+            let high = self.shown.quantity(&Value::Number(*high));
+            format!("{} to {high}", self.shown.text(&Value::Number(*low)))
+        };
+        Value::Text(changes.iter().map(text).collect::<Vec<_>>().join("; "))
     }
 }
 

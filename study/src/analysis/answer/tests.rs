@@ -102,49 +102,60 @@ fn the_hardest_job_can_be_trusted_where_any_can() {
     assert_eq!(answer.trust.unwrap().not_trusted, 6);
 }
 
-fn effects(table: &Table) -> Effects {
-    let rows: Vec<usize> = (0..table.rows()).collect();
-    Effects::of(table, &rows, &[], &HEADLINE, &|_| Vec::new())
-}
-
-fn effect<'a>(effects: &'a Effects, parameter: &str) -> &'a Effect {
-    effects.effects.iter().find(|effect| effect.parameter == parameter).unwrap()
-}
-
 /// Jobs `a`, `b`, … of parameters `strategy`, `mass`: done, deployed, with these measures.
 fn study(rows: &[(&str, f64, f64, f64)]) -> Table {
-    let text = |text: &str| Value::Text(text.to_owned());
-    let ids = (0..rows.len()).map(|row| text(&row.to_string())).collect();
-    let numbers = |of: fn(&(&str, f64, f64, f64)) -> f64| {
+    let text =
+        |of: &dyn Fn(usize) -> String| (0..rows.len()).map(|row| Value::Text(of(row))).collect();
+    let numbers = |of: &dyn Fn(&(&str, f64, f64, f64)) -> f64| {
         rows.iter().map(|row| Value::Number(of(row))).collect()
     };
-    let all = |cell: Value| vec![cell; rows.len()];
     Table {
         columns: vec![
-            column("job", CellType::Text, ids),
-            column("strategy", CellType::Text, rows.iter().map(|row| text(row.0)).collect()),
-            column("mass", CellType::Number, numbers(|row| row.1)),
-            column("status", CellType::Text, all(text("done"))),
-            column("verdict", CellType::Text, all(text("deployed"))),
-            column(HEADLINE[0].name(), CellType::Number, numbers(|row| row.2)),
-            column(HEADLINE[1].name(), CellType::Number, numbers(|row| row.3)),
-            column("passages", CellType::Integer, all(Value::Integer(0))),
+            column("job", CellType::Text, text(&|row| format!("job {row}"))),
+            column("strategy", CellType::Text, text(&|row| rows[row].0.to_owned())),
+            column("mass", CellType::Number, numbers(&|row| row.1)),
+            column("status", CellType::Text, text(&|_| "done".to_owned())),
+            column("verdict", CellType::Text, text(&|_| "deployed".to_owned())),
+            column(HEADLINE[0].name(), CellType::Number, numbers(&|row| row.2)),
+            column(HEADLINE[1].name(), CellType::Number, numbers(&|row| row.3)),
+            column("passages", CellType::Integer, vec![Value::Integer(0); rows.len()]),
         ],
     }
 }
 
+/// The values of a parameter, ranked as the answer does.
+fn compared(table: &Table, by: &str) -> Result<Ranking, String> {
+    let rows: Vec<usize> = (0..table.rows()).collect();
+    comparison(table, &rows, by, (&[], &[]), &|_| Vec::new())
+}
+
+/// Median of each value that is compared, and the best value, of a headline measure.
+fn medians(ranking: &Ranking, measure: usize) -> (Vec<(String, f64)>, Option<String>) {
+    let measure = DEFAULT_MEASURES
+        .iter()
+        .filter(|id| HEADLINE.contains(id))
+        .position(|id| *id == HEADLINE[measure])
+        .unwrap();
+    let name = |position: usize| ranking.candidates[position].values[0].to_string();
+    let medians = (0..ranking.candidates.len()).filter_map(|position| {
+        Some((name(position), ranking.candidates[position].measures[measure]?.median))
+    });
+    let mut medians: Vec<(String, f64)> = medians.collect();
+    medians.sort_by(|a, b| a.0.cmp(&b.0));
+    (medians, ranking.measures[measure].best.map(name))
+}
+
 #[test]
-fn medians_are_taken_over_sets_in_which_every_value_is_done() {
+fn medians_are_taken_over_sets_in_which_every_value_is_trusted_and_done() {
     let mut table = table();
     let damped = table.columns.iter_mut().find(|c| c.name == "numerically_damped").unwrap();
     damped.cells.fill(Value::Bool(false));
-    let effects = effects(&table);
-    let flow = effect(&effects, "flow");
-    assert_eq!(flow.measures[0].sets, 2, "mass 2 and 3 have no done job at flow 1");
-    let medians: Vec<_> = flow.measures.iter().map(|measure| measure.medians.clone()).collect();
-    assert_eq!(medians, [[Some(5.0), Some(2.5)], [Some(20.0), Some(30.0)]]);
-    let mass = effect(&effects, "mass");
-    assert_eq!((mass.measures[0].sets, mass.values.len()), (1, 4), "only flow 2 has all four");
+    let flow = compared(&table, "flow").unwrap();
+    let (one, two) = ("1".to_owned(), "2".to_owned());
+    // Mass 2 has no job at flow 1, and the failed job at mass 3 has no measure.
+    assert_eq!(flow.measures[0].sets, 2);
+    assert_eq!(medians(&flow, 0).0, [(one.clone(), 5.0), (two.clone(), 2.5)]);
+    assert_eq!(medians(&flow, 1).0, [(one, 20.0), (two, 30.0)]);
 }
 
 #[test]
@@ -155,48 +166,26 @@ fn one_point_outside_the_grid_removes_no_parameter() {
         ("rapid", 1.0, 3.0, 20.0),
         ("rapid", 2.0, 2.0, 22.0),
     ];
-    let without = effects(&study(&grid));
-    let with = effects(&study(&[&grid[..], &[("direct", 0.0, 1.0, 30.0)]].concat()));
+    let without = study(&grid);
+    let with = study(&[&grid[..], &[("direct", 0.0, 1.0, 30.0)]].concat());
     for parameter in ["strategy", "mass"] {
-        let (without, with) = (effect(&without, parameter), effect(&with, parameter));
-        for (without, with) in without.measures.iter().zip(&with.measures) {
-            assert_eq!((with.sets, &with.medians[..2]), (2, &without.medians[..]));
-            assert_eq!((with.medians.len(), with.medians[2]), (3, None));
-            assert_eq!(with.extremes, without.extremes);
-        }
-        let (value, measure, reason) = &with.left_out[0];
+        let [with, without] = [&with, &without].map(|table| compared(table, parameter).unwrap());
+        assert_eq!((&with.candidates, with.sets), (&without.candidates, 2));
         let outside = if parameter == "mass" { "0" } else { "direct" };
-        let value = value.as_ref().unwrap().to_string();
-        assert_eq!((value.as_str(), *measure), (outside, HEADLINE[0]));
-        assert_eq!(*reason, format!("no job differs from it in {parameter} alone"));
+        let (values, reason) = &with.left_out[0];
+        assert_eq!(
+            (values[0].to_string().as_str(), reason.as_str()),
+            (outside, "it is in 1 of 3 sets of equal conditions")
+        );
     }
     // A parameter of which no two points differ alone is named.
-    let apart = effects(&study(&[("delayed", 1.0, 5.0, 10.0), ("rapid", 2.0, 4.0, 12.0)]));
-    assert!(apart.effects.is_empty());
-    let reasons: Vec<&str> = apart.not_compared.iter().map(|(_, why)| why.as_str()).collect();
-    assert_eq!(
-        reasons,
-        ["no two points differ in strategy alone", "no two points differ in mass alone"]
-    );
+    let apart = study(&[("delayed", 1.0, 5.0, 10.0), ("rapid", 2.0, 4.0, 12.0)]);
+    let reason = compared(&apart, "strategy").unwrap_err();
+    assert!(reason.contains("equal in all other parameters"), "{reason}");
 }
 
 #[test]
-fn values_with_few_partners_leave_the_many_sets_of_the_others() {
-    let mut rows: Vec<(&str, f64, f64, f64)> = Vec::new();
-    for mass in 1..=9 {
-        for strategy in ["delayed", "rapid", "residual"] {
-            rows.push((strategy, f64::from(mass), 1.0, 1.0));
-        }
-    }
-    rows.push(("direct", 4.0, 1.0, 1.0));
-    let effects = effects(&study(&rows));
-    let strategy = effect(&effects, "strategy");
-    assert_eq!(strategy.measures[0].sets, 9);
-    assert_eq!(strategy.left_out[0].2, "it is in 1 of 9 sets");
-}
-
-#[test]
-fn a_best_value_deploys_and_is_trusted_in_every_job() {
+fn a_best_value_deploys_in_every_point_and_is_not_a_method() {
     let mut table = study(&[
         ("delayed", 1.0, 5.0, 10.0),
         ("delayed", 2.0, 4.0, 12.0),
@@ -205,58 +194,30 @@ fn a_best_value_deploys_and_is_trusted_in_every_job() {
         ("residual", 1.0, 6.0, 5.0),
         ("residual", 2.0, 6.0, 6.0),
     ]);
-    let strategy_of = |table: &Table| effect(&effects(table), "strategy").clone();
-    let judged = |best: &[usize], worst: &[usize]| Extremes::Judged {
-        best: best.to_vec(),
-        worst: worst.to_vec(),
-    };
-    let all = strategy_of(&table);
-    assert_eq!(all.deployed, [(2, 2); 3]);
-    assert_eq!(all.measures[0].extremes, judged(&[1], &[2]));
-    assert_eq!(all.measures[1].extremes, judged(&[2], &[1]));
-
+    let best = |table: &Table, measure| medians(&compared(table, "strategy").unwrap(), measure).1;
+    assert_eq!([0, 1].map(|measure| best(&table, measure).unwrap()), ["rapid", "residual"]);
     // One stalled job: its strategy is not the best by its low speed.
     let verdict = table.columns.iter().position(|column| column.name == "verdict").unwrap();
     table.columns[verdict].cells[4] = Value::Text("stalled".to_owned());
-    let stalled = strategy_of(&table);
-    assert_eq!(stalled.deployed[2], (1, 2));
-    assert_eq!(stalled.measures[1].extremes, judged(&[0], &[1]));
-
-    // Film passed through film: the job is no evidence, its set has one value less.
+    assert_eq!(best(&table, 1).unwrap(), "delayed");
+    // Film passed through film: the job is no evidence, and its set has no value of rapid.
     let passages = table.columns.iter().position(|column| column.name == "passages").unwrap();
     table.columns[passages].cells[3] = Value::Integer(2);
-    let untrusted = strategy_of(&table);
-    assert_eq!((untrusted.measures[0].sets, untrusted.deployed[1]), (1, (1, 2)));
-    assert_eq!(untrusted.measures[0].extremes, judged(&[0], &[2]), "rapid is not the best");
-
-    // The others are equal, within 3 %: all of them are worst.
-    let many = study(&[
-        ("delayed", 1.0, 5.0, 10.0),
-        ("rapid", 1.0, 9.0, 20.0),
-        ("residual", 1.0, 9.1, 20.1),
-    ]);
-    let many = strategy_of(&many);
-    assert_eq!(many.measures[0].extremes, judged(&[0], &[2, 1]));
-
-    // One strategy never rises to 90 %: the measure is named, the other one is compared.
-    let mut never = study(&[("delayed", 1.0, 5.0, 10.0), ("rapid", 1.0, 5.0, 20.0)]);
-    let time = never.columns.iter().position(|column| column.name == HEADLINE[0].name()).unwrap();
-    never.columns[time].cells[1] = Value::Null;
-    let never = strategy_of(&never);
-    assert_eq!(never.measures.len(), 1);
-    assert_eq!((&never.left_out[0].0, never.left_out[0].1), (&None, HEADLINE[0]));
-
+    assert_eq!(compared(&table, "strategy").unwrap().measures[0].sets, 1);
     // No model and no mesh is the best one: it is the same capsule.
     let mut models = study(&[("film", 1.0, 5.0, 10.0), ("piston", 1.0, 3.0, 20.0)]);
-    let strategy = models.columns.iter().position(|column| column.name == "strategy").unwrap();
-    models.columns[strategy].name = "model".to_owned();
-    let range = Extremes::Range { lowest: vec![1], highest: vec![0] };
-    assert_eq!(effect(&effects(&models), "model").measures[0].extremes, range);
-
-    // Within the spread of the measure there is no best.
-    let equal = study(&[("delayed", 1.0, 5.0, 10.0), ("rapid", 1.0, 5.1, 10.1)]);
-    let equal = strategy_of(&equal);
-    assert!(equal.measures.iter().all(|measure| measure.extremes == Extremes::Equal));
+    "model".clone_into(&mut models.columns[1].name);
+    assert_eq!(medians(&compared(&models, "model").unwrap(), 0).1, None);
+    // Pair by pair against the best; within the spread of the measure values are equal.
+    let three = study(&[("a", 1.0, 5.0, 10.0), ("b", 1.0, 5.1, 20.0), ("c", 1.0, 9.0, 10.1)]);
+    let three = compared(&three, "strategy").unwrap();
+    let time = three.measures.iter().find(|m| m.column.name == HEADLINE[0].name()).unwrap();
+    let of =
+        |name: &str| three.candidates.iter().position(|c| c.values[0].to_string() == name).unwrap();
+    assert_eq!((time.equal[of("b")], time.equal[of("c")]), (true, false));
+    let worse = time.against_best[of("c")].as_ref().unwrap();
+    assert_eq!((worse.pairs(), worse.count(compare::Better::Base)), (1, 1));
+    assert_eq!(worse.ratio.unwrap().median.to_bits(), 1.8_f64.to_bits());
 }
 
 #[test]
@@ -269,12 +230,11 @@ fn a_set_of_jobs_counts_once_and_a_set_of_one_job_not_at_all() {
     ]);
     let jobs = ["x", "y", "x", "y"];
     table.columns[0].cells = jobs.map(|job| Value::Text(job.to_owned())).to_vec();
-    let effects = effects(&table);
-    assert_eq!(effect(&effects, "strategy").measures[0].sets, 1);
-    assert_eq!(effect(&effects, "strategy").deployed, [(1, 1); 2]);
-    let (parameter, reason) = &effects.not_compared[0];
-    assert_eq!(parameter, "mass");
-    assert!(reason.starts_with("points that differ in mass alone are one job"), "{reason}");
+    assert_eq!(compared(&table, "strategy").unwrap().measures[0].sets, 1);
+    assert_eq!(
+        compared(&table, "mass").unwrap_err(),
+        "points that differ in mass alone are one job"
+    );
 }
 
 /// Points within the mesh error of the best one count once, whatever the number of their runs, and it does not count.

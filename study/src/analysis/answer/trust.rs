@@ -1,7 +1,5 @@
 //! How far the results of a study can be trusted.
 
-use serde::{Deserialize, Serialize};
-
 use crate::analysis::compare;
 use crate::analysis::statistics::Spread;
 use crate::input::value::Value;
@@ -10,7 +8,7 @@ use crate::job::row::ColumnId;
 use crate::store::table::Table;
 
 /// The audit over all done jobs.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trust {
     /// Number of done jobs.
     pub jobs: usize,

@@ -25,12 +25,14 @@ use crate::job::row::{BetterSide, COLUMNS, CellType, ColumnId, DerivedColumn};
 use crate::store::table::{Column, Table};
 use crate::study::Zipped;
 
+mod comparison;
 mod sets;
 mod tally;
 mod tolerance;
 
 pub use super::values::{canonical, measured};
-pub use sets::{Pair, Sets, pairs};
+pub use comparison::Comparison;
+pub use sets::{Pair, Set, Sets, block, pairs};
 pub use tally::{Tally, pairs_of_jobs, tallies};
 pub use tolerance::{ROUNDING, Tolerance, ToleranceSource};
 
@@ -108,7 +110,7 @@ impl Better {
 
     /// The result with base and other exchanged.
     #[must_use]
-    pub fn exchanged(self) -> Self {
+    fn exchanged(self) -> Self {
         match self {
             Self::Base => Self::Other,
             Self::Other => Self::Base,

@@ -95,6 +95,31 @@ fn function(
     (!function.is_empty()).then_some(function)
 }
 
+/// The rows of a set, one for each value of a parameter.
+pub type Set = Vec<Option<usize>>;
+
+/// The values and the sets with the most independent comparisons, of those sets in which every one of these
+/// values has a row, as `(values − 1) · sets` counts them; `None` when no set has two values.
+pub fn block(sets: &[Set], values: usize) -> Option<(Vec<usize>, Vec<&Set>)> {
+    let number = |index: &usize| sets.iter().filter(|set| set[*index].is_some()).count();
+    let mut order: Vec<usize> = (0..values).collect();
+    // The sort is stable: values of equally many sets stay in plan order.
+    order.sort_by_key(|index| std::cmp::Reverse(number(index)));
+    let mut complete: Vec<&Set> = sets.iter().collect();
+    let mut best: Option<(usize, usize)> = None;
+    for (others, index) in order.iter().enumerate() {
+        complete.retain(|set| set[*index].is_some());
+        let comparisons = others * complete.len();
+        if comparisons > 0 && best.is_none_or(|(_, most)| comparisons >= most) {
+            best = Some((others + 1, comparisons));
+        }
+    }
+    let (number, _) = best?;
+    let chosen = order[..number].to_vec();
+    let block = sets.iter().filter(|set| chosen.iter().all(|index| set[*index].is_some()));
+    Some((chosen.clone(), block.collect()))
+}
+
 /// Two rows of one set: positions in the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pair {

@@ -23,6 +23,25 @@ pub struct Tally {
 }
 
 impl Tally {
+    /// Counts the pairs of the base with the other value.
+    pub fn of(table: &Table, pairs: &[Pair], value: Value, measure: &Measure<'_>) -> Self {
+        let pairs = pairs_of_jobs(table, pairs);
+        let compared: Vec<Compared> =
+            pairs.iter().map(|pair| compared(table, *pair, measure)).collect();
+        let mut counts = BTreeMap::new();
+        for pair in &compared {
+            *counts.entry(pair.better.name()).or_default() += 1;
+        }
+        let two_jobs = || compared.iter().filter(|pair| pair.better != Better::SameJob);
+        Self {
+            value,
+            measure: measure.column.name.clone(),
+            counts,
+            ratio: Spread::of(two_jobs().filter_map(Compared::ratio)),
+            difference: Spread::of(two_jobs().filter_map(Compared::difference)),
+        }
+    }
+
     /// Number of pairs with this result.
     pub fn count(&self, better: Better) -> usize {
         self.counts.get(better.name()).copied().unwrap_or(0)
@@ -54,23 +73,8 @@ pub fn tallies(table: &Table, pairs: &[Pair], by: &str, measures: &[Measure<'_>]
     for value in values(column, &others) {
         let is_value = |pair: &&Pair| canonical(&column.cells[pair.other]) == canonical(&value);
         let of_value: Vec<Pair> = pairs.iter().filter(is_value).copied().collect();
-        let of_value = pairs_of_jobs(table, &of_value);
-        for measure in measures {
-            let compared: Vec<Compared> =
-                of_value.iter().map(|pair| compared(table, *pair, measure)).collect();
-            let mut counts = BTreeMap::new();
-            for pair in &compared {
-                *counts.entry(pair.better.name()).or_default() += 1;
-            }
-            let two_jobs = || compared.iter().filter(|pair| pair.better != Better::SameJob);
-            tallies.push(Tally {
-                value: value.clone(),
-                measure: measure.column.name.clone(),
-                counts,
-                ratio: Spread::of(two_jobs().filter_map(Compared::ratio)),
-                difference: Spread::of(two_jobs().filter_map(Compared::difference)),
-            });
-        }
+        let of_measure = |measure| Tally::of(table, &of_value, value.clone(), measure);
+        tallies.extend(measures.iter().map(of_measure));
     }
     tallies
 }

@@ -12,13 +12,11 @@
 //! that are lower or higher, not better. A margin is the distance of a measure from its
 //! limit over the limit: near the limit its spread is the relative spread of the measure.
 
-use serde::{Deserialize, Serialize};
-
 use super::Sets;
 use crate::accuracy::error_column;
 use crate::analysis::replicates::Condensed;
 use crate::analysis::statistics::Spread;
-use crate::input::value::Value;
+use crate::input::value::{Value, brief_number};
 use crate::job::row::{CellType, ColumnId, DerivedColumn};
 use crate::store::table::{Column, Table};
 use crate::study::Zipped;
@@ -30,7 +28,7 @@ pub const ROUNDING: f64 = 1e-9;
 const SEED: &str = "seed";
 
 /// Up to which difference two values of a measure are equal.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
     /// The limit: relative, for a signed measure absolute.
     pub limit: f64,
@@ -41,7 +39,7 @@ pub struct Tolerance {
 }
 
 /// Where a tolerance comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ToleranceSource {
     /// The user gave it.
     Given,
@@ -117,6 +115,19 @@ impl Tolerance {
         let scale = if self.absolute { 1.0 } else { a.abs().max(b.abs()) };
         // The difference of equal infinities is NaN.
         a.total_cmp(&b).is_eq() || (a - b).abs() <= self.limit * scale
+    }
+
+    /// Within what values are equal: "5 %", or an absolute difference. Mesh errors differ from pair to pair.
+    pub fn text(&self) -> String {
+        let limit = match self.source {
+            ToleranceSource::Unknown | ToleranceSource::Ranges => "rounding".to_owned(),
+            _ if self.absolute => brief_number(self.limit),
+            _ => format!("{} %", brief_number(100.0 * self.limit)),
+        };
+        match self.source {
+            ToleranceSource::MeshError => format!("their mesh errors (median {limit})"),
+            _ => limit,
+        }
     }
 
     /// Whether a difference above it is better or worse, and not only lower or higher.

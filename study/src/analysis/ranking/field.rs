@@ -1,16 +1,20 @@
 //! The candidates of a ranking: their points, runs, margins and medians.
 
-use super::{Basis, Candidate, Field, Ranking, ranked_points};
-use crate::analysis::answer::Set;
-use crate::analysis::compare::Range;
+use std::collections::BTreeSet;
+
+use super::{Basis, Candidate, Field, RankedMeasure, Ranking, is_better, ranked_points};
+use crate::analysis::compare::{Pair, Range, Set, Tally, median_range};
 use crate::analysis::replicates::Runs;
 use crate::analysis::statistics::Spread;
+use crate::input::keys::numerical;
 use crate::input::value::Value;
 use crate::job::proportion::Proportion;
+use crate::job::row::BetterSide;
 
 impl Field<'_> {
     /// The candidates in their order.
     pub(super) fn ranked(&self, values: &[Vec<Value>]) -> Ranking {
+        let sets = self.different_sets();
         let blocks: Vec<(Vec<usize>, Vec<&Set>)> = (0..self.measures.len())
             .map(|measure| {
                 let has = |set: &&Set| {
@@ -21,7 +25,7 @@ impl Field<'_> {
                 };
                 let with: Vec<usize> =
                     self.chosen.iter().copied().filter(|c| self.has(measure, *c)).collect();
-                (with, self.sets.iter().filter(has).collect())
+                (with, sets.iter().copied().filter(has).collect())
             })
             .collect();
         let mut found: Vec<(usize, Candidate)> = self
@@ -33,14 +37,19 @@ impl Field<'_> {
         found.sort_by_key(|(index, _)| *index);
         found.sort_by(|a, b| self.compare(&a.1, &b.1));
         let order: Vec<usize> = found.iter().map(|(index, _)| *index).collect();
-        for (rank, (_, candidate)) in found.iter_mut().enumerate() {
+        for (rank, (_, candidate)) in found.iter_mut().enumerate().filter(|_| self.dominance) {
             // One after it can dominate it: the order decides by differences within the spread, too.
             let first = order.iter().position(|other| self.dominates(*other, order[rank]));
             candidate.dominated_by = first.map(|position| position + 1);
         }
+        let measures = blocks.iter().enumerate();
+        let measures = measures.map(|(index, (_, sets))| self.ranked_measure(index, sets, &found));
         Ranking {
             basis: self.basis,
+            measures: measures.collect(),
             candidates: found.into_iter().map(|(_, candidate)| candidate).collect(),
+            by: Vec::new(),
+            is_one_job: self.sets.iter().all(|set| self.jobs(set).len() < 2),
             sets: self.sets.len(),
             matched: Vec::new(),
             carried: Vec::new(),
@@ -48,7 +57,75 @@ impl Field<'_> {
             outside: 0,
             not_ended: 0,
             not_trusted: ranked_points(self).filter(|point| !self.trusted(*point)).count(),
-            measure_sets: blocks.iter().map(|(_, sets)| sets.len()).collect(),
+        }
+    }
+
+    /// The different jobs of a set.
+    fn jobs(&self, set: &Set) -> BTreeSet<String> {
+        let job = self.table.column("job");
+        let rows = self.chosen.iter().filter_map(|index| set[*index]);
+        rows.filter_map(|row| Some(job?.cells[row].to_string())).collect()
+    }
+
+    /// The sets of different jobs, each once, whatever number of points are these jobs.
+    fn different_sets(&self) -> Vec<&Set> {
+        let mut seen = BTreeSet::new();
+        let job = self.table.column("job");
+        let jobs = |set: &Set| -> Vec<Option<String>> {
+            let job = |row: &Option<usize>| Some(job?.cells[(*row)?].to_string());
+            set.iter().map(job).collect()
+        };
+        self.sets.iter().filter(|set| job.is_none() || seen.insert(jobs(set))).collect()
+    }
+
+    /// How the candidates, in their order, stand to the best one in a measure.
+    fn ranked_measure(
+        &self,
+        index: usize,
+        sets: &[&Set],
+        found: &[(usize, Candidate)],
+    ) -> RankedMeasure {
+        let measure = &self.measures[index];
+        // Of a mesh, or a model, no value is better: it computes another number for the same capsule.
+        let of_method = self.by.iter().any(|name| numerical::is_of_method(name));
+        let median = |position: usize| Some(found[position].1.measures[index]?.median);
+        let always = |candidate: &Candidate| {
+            self.basis == Basis::Measures || candidate.deployed == candidate.points
+        };
+        let mut best: Option<(usize, f64)> = None;
+        for (position, (_, candidate)) in found.iter().enumerate() {
+            let value = median(position).filter(|_| always(candidate));
+            if let Some(value) =
+                value.filter(|value| best.is_none_or(|(_, best)| is_better(measure, *value, best)))
+            {
+                best = Some((position, value));
+            }
+        }
+        let best = best.filter(|_| !of_method && measure.side() != BetterSide::Neither);
+        let best = best.map(|(position, _)| position);
+        let tally = |position: usize| {
+            let base = best.filter(|best| *best != position)?;
+            median(position)?;
+            let pairs = sets.iter().filter_map(|set| {
+                let [base, other] = [base, position].map(|position| set[found[position].0]);
+                let pair = Pair { base: base?, other: other? };
+                [pair.base, pair.other].iter().all(|row| self.trusted(*row)).then_some(pair)
+            });
+            let value = found[position].1.values.first().cloned().unwrap_or(Value::Null);
+            Some(Tally::of(self.table, &pairs.collect::<Vec<_>>(), value, measure))
+        };
+        let range = |position: usize| found[position].1.ranges[index];
+        let equal = |position: usize| {
+            let pair = best.and_then(range).zip(range(position));
+            pair.is_some_and(|(best, range)| measure.are_equal(best, range))
+        };
+        RankedMeasure {
+            column: measure.column.like(measure.column.name.clone(), Vec::new()),
+            tolerance: measure.tolerance,
+            sets: sets.len(),
+            best,
+            against_best: (0..found.len()).map(tally).collect(),
+            equal: (0..found.len()).map(equal).collect(),
         }
     }
 
@@ -61,13 +138,17 @@ impl Field<'_> {
         let points: Vec<usize> = self.sets.iter().filter_map(|set| set[index]).collect();
         let count = |holds: &dyn Fn(usize) -> bool| points.iter().filter(|p| holds(**p)).count();
         let sum = |of: &dyn Fn(&Runs) -> Proportion| self.sum(&points, of);
+        let ranges = blocks.iter().enumerate().map(|(measure, (with, sets))| {
+            let ranges = sets.iter().filter_map(|set| self.range(measure, set, index));
+            median_range(&ranges.collect::<Vec<_>>()).filter(|_| with.contains(&index))
+        });
         let measures = blocks.iter().enumerate().map(|(measure, (with, sets))| {
             let of_points = sets.iter().filter_map(|set| self.value(measure, set, index));
             let spread = Spread::of(of_points).filter(|_| with.contains(&index))?;
             let name = &self.measures[measure].column.name;
             let range = |end: usize| {
                 let points = sets.iter().filter_map(|set| set[index]);
-                points.filter_map(move |p| Some(self.points.condensed.spread(name, p)?[end]))
+                points.filter_map(move |p| Some(self.points.spread(name, p)?[end]))
             };
             Some(Spread {
                 least: range(0).fold(spread.least, f64::min),
@@ -79,12 +160,13 @@ impl Field<'_> {
             points: points.len(),
             safe: count(&|point| self.points.is_safe(point) == Some(true)),
             deployed: count(&|point| self.points.deploys(point) == Some(true)),
-            failed: count(&|point| self.points.condensed.runs[point].failed > 0),
+            failed: count(&|point| self.points.runs[point].failed > 0),
             safe_runs: sum(&|runs| runs.safe),
             deployed_runs: sum(&|runs| runs.deployed),
             missed: self.missed(&points),
             margin: self.worst(&points),
             measures: measures.collect(),
+            ranges: ranges.collect(),
             dominated_by: None,
             values,
         }
@@ -92,7 +174,7 @@ impl Field<'_> {
 
     /// A proportion over the runs of some points.
     fn sum(&self, points: &[usize], of: &dyn Fn(&Runs) -> Proportion) -> Proportion {
-        let proportions = points.iter().map(|point| of(&self.points.condensed.runs[*point]));
+        let proportions = points.iter().map(|point| of(&self.points.runs[*point]));
         proportions.fold(Proportion::default(), |sum, one| Proportion {
             met: sum.met + one.met,
             of: sum.of + one.of,
@@ -118,7 +200,7 @@ impl Field<'_> {
     }
 
     fn trusted(&self, point: usize) -> bool {
-        self.points.trusted[point]
+        self.points.runs[point].has_trusted
     }
 
     /// A trusted value of a measure at the point of a candidate in a set.

@@ -11,21 +11,22 @@
 //! without verdicts the measures decide alone. A candidate is dominated by another one that is not worse in
 //! anything and better in something, up to the spread of each measure.
 
-use super::answer::{Points, Set, worst_margin};
-use super::compare::Measure;
+use super::compare::{Measure, Range, Set, Tally, Tolerance};
+use super::replicates::Condensed;
 use super::statistics::Spread;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::proportion::Proportion;
 use crate::job::result_limit::ResultLimit;
 use crate::job::row::{BetterSide, ColumnId};
-use crate::store::table::Table;
+use crate::store::table::{Column, Table};
 use crate::study::Zipped;
 
 mod dominance;
 mod field;
 mod order;
 mod sets;
+mod table;
 
 use sets::{candidates, sets, shared};
 
@@ -33,8 +34,8 @@ use sets::{candidates, sets, shared};
 pub const DEFAULT_MEASURES: [ColumnId; 3] =
     [ColumnId::PeakVz, ColumnId::PeakKineticEnergy, ColumnId::T90ZRimSinceRelease];
 
-/// What to rank.
-pub struct Question<'a> {
+/// What is ranked, and by what.
+pub struct RankingInput<'a> {
     /// The table.
     pub table: &'a Table,
     /// The rows that count.
@@ -49,6 +50,8 @@ pub struct Question<'a> {
     pub measures: &'a [ColumnId],
     /// The parameters on the axis of one.
     pub zipped: &'a dyn Fn(&str) -> Vec<Zipped>,
+    /// Whether each candidate is compared with each other one, to find those that are dominated.
+    pub dominance: bool,
 }
 
 /// Candidates, the best one first.
@@ -58,6 +61,12 @@ pub struct Ranking {
     pub basis: Basis,
     /// The candidates.
     pub candidates: Vec<Candidate>,
+    /// The ranked parameters: columns without cells.
+    pub by: Vec<Column>,
+    /// The measures, and how each candidate stands to the best one.
+    pub measures: Vec<RankedMeasure>,
+    /// Whether the points of every set are one job, so that nothing is compared.
+    pub is_one_job: bool,
     /// Number of sets of points over which all of them are ranked.
     pub sets: usize,
     /// The other parameters, equal in a set.
@@ -72,8 +81,24 @@ pub struct Ranking {
     pub not_ended: usize,
     /// Number of ranked points whose measures cannot be trusted and do not count.
     pub not_trusted: usize,
-    /// For each measure the number of sets with a value of every candidate that has one.
-    pub measure_sets: Vec<usize>,
+}
+
+/// A measure of a ranking.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RankedMeasure {
+    /// The measure: a column without cells.
+    pub column: Column,
+    /// Up to which difference values are equal.
+    pub tolerance: Tolerance,
+    /// Number of sets with a value of every candidate that has one.
+    pub sets: usize,
+    /// Position of the candidate with the best median of those that deploy in all their points; `None` without one, and
+    /// for a measure or a parameter of which no side is better.
+    pub best: Option<usize>,
+    /// Each candidate against the best one, set by set; `None` for the best one, and without values.
+    pub against_best: Vec<Option<Tally>>,
+    /// Whether the median of each candidate is equal to that of the best one.
+    pub equal: Vec<bool>,
 }
 
 /// What orders candidates before their measures.
@@ -111,13 +136,17 @@ pub struct Candidate {
     pub margin: Option<(f64, String)>,
     /// Each measure: median over the points, range over their runs.
     pub measures: Vec<Option<Spread>>,
+    /// Each measure: the medians of the smallest values, the medians and the largest values of its points.
+    pub ranges: Vec<Option<Range>>,
     /// Rank of the first other candidate that dominates it.
     pub dominated_by: Option<usize>,
 }
 
 /// The data of a ranking: points, and sets of them with one point per candidate.
 struct Field<'a> {
-    points: &'a Points,
+    points: &'a Condensed,
+    by: &'a [String],
+    dominance: bool,
     table: &'a Table,
     limits: &'a [ResultLimit],
     measures: Vec<Measure<'a>>,
@@ -130,49 +159,46 @@ struct Field<'a> {
 }
 
 impl Ranking {
-    /// Ranks the candidates of a question.
+    /// Ranks the candidates of an input.
     ///
     /// # Errors
     /// Why nothing can be ranked.
-    pub fn of(question: &Question<'_>) -> Result<Self, String> {
-        let replicates: Vec<String> = question
-            .replicates
-            .iter()
-            .filter(|name| !question.by.contains(name))
-            .cloned()
-            .collect();
-        let points = Points::of(question.table, question.rows, &replicates);
-        let table = &points.condensed.table;
+    pub fn of(input: &RankingInput<'_>) -> Result<Self, String> {
+        let replicates: Vec<String> =
+            input.replicates.iter().filter(|name| !input.by.contains(name)).cloned().collect();
+        let points = Condensed::of(input.table, input.rows, &replicates);
+        let table = &points.table;
         let all: Vec<usize> = (0..table.rows()).collect();
         let ended: Vec<usize> =
             all.iter().copied().filter(|point| has_ended(table, *point)).collect();
-        let values = candidates(table, question.by);
+        let values = candidates(table, input.by);
         if ended.is_empty() {
             return Err("no point has ended".to_owned());
         }
-        let (sets, matched, carried) = sets(table, &ended, question, &values);
+        let (sets, matched, carried) = sets(table, &ended, input, &values);
         let shared = shared(&sets, values.len());
         let Some((chosen, kept)) = shared else {
             return Err(format!(
                 "no two values of {} have ended points that are equal in all other parameters",
-                question.by.join(", ")
+                input.by.join(", ")
             ));
         };
-        let zipped = (question.zipped)("seed");
-        let measures = question.measures.iter().filter_map(|id| table.column(id.name()));
-        let measures =
-            measures.map(|column| Measure::of_points(&points.condensed, &ended, column, &zipped));
-        let margins = points.condensed.runs.iter();
+        let zipped = (input.zipped)("seed");
+        let measures = input.measures.iter().filter_map(|id| table.column(id.name()));
+        let measures = measures.map(|column| Measure::of_points(&points, &ended, column, &zipped));
+        let margins = points.runs.iter();
         let margins = margins.map(|runs| {
-            worst_margin(question.table, runs).map(|(margin, measure, _)| (margin, measure))
+            runs.worst_margin(input.table).map(|(margin, measure, _)| (margin, measure))
         });
         let field = Field {
             points: &points,
+            by: input.by,
+            dominance: input.dominance,
             table,
-            limits: question.limits,
+            limits: input.limits,
             measures: measures.collect(),
             sets: kept,
-            basis: basis(question.limits, &points),
+            basis: basis(input.limits, &points),
             margins: margins.collect(),
             chosen,
         };
@@ -182,15 +208,17 @@ impl Ranking {
             ended.len() - ranked_points(&field).count() - left_out_points(&field, &sets);
         ranking.not_ended = all.len() - ended.len();
         (ranking.matched, ranking.carried) = (matched, carried);
+        let by = input.by.iter().filter_map(|name| input.table.column(name));
+        ranking.by = by.map(|column| column.like(column.name.clone(), Vec::new())).collect();
         Ok(ranking)
     }
 }
 
 /// What orders candidates first.
-fn basis(limits: &[ResultLimit], points: &Points) -> Basis {
+fn basis(limits: &[ResultLimit], points: &Condensed) -> Basis {
     if !limits.is_empty() {
         Basis::Limits
-    } else if points.condensed.runs.iter().any(|runs| runs.deployed.of > 0) {
+    } else if points.runs.iter().any(|runs| runs.deployed.of > 0) {
         Basis::Verdicts
     } else {
         Basis::Measures
@@ -223,6 +251,17 @@ fn left_out(chosen: &[usize], values: &[Vec<Value>], sets: &[Set]) -> Vec<(Vec<V
         with => format!("it is in {with} of {} sets of equal conditions", sets.len()),
     };
     others.map(|(index, values)| (values.clone(), reason(index))).collect()
+}
+
+impl Ranking {
+    /// The values of the ranked parameters as a reader sees them.
+    pub fn label(&self, values: &[Value]) -> String {
+        let pairs = self.by.iter().zip(values);
+        let texts: Vec<String> = pairs
+            .map(|(column, value)| format!("{}={}", column.name, column.shown.quantity(value)))
+            .collect();
+        texts.join(", ")
+    }
 }
 
 /// Which of two values of a measure is better, without a tolerance.

@@ -2,9 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::Question;
-use crate::analysis::answer::{Set, block};
-use crate::analysis::compare::{Sets, canonical};
+use super::RankingInput;
+use crate::analysis::compare::{Set, Sets, block, canonical};
 use crate::input::value::Value;
 use crate::job::row::CellType;
 use crate::store::table::{Column, Table};
@@ -33,12 +32,12 @@ fn key(table: &Table, by: &[String], row: usize) -> String {
 pub(super) fn sets(
     table: &Table,
     rows: &[usize],
-    question: &Question<'_>,
+    input: &RankingInput<'_>,
     values: &[Vec<Value>],
 ) -> (Vec<Set>, Vec<String>, Vec<String>) {
-    let by = question.by;
+    let by = input.by;
     let sets = if let [one] = by {
-        Sets::new(table, rows, one, &(question.zipped)(one))
+        Sets::new(table, rows, one, &(input.zipped)(one))
     } else {
         // The ranked parameters together are one.
         let joined = joined(table, by);

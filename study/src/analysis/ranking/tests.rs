@@ -42,7 +42,7 @@ fn table(runs: &[Run]) -> Table {
 fn ranked(runs: &[Run], by: &[&str], limits: &[ResultLimit]) -> Ranking {
     let table = table(runs).judged(limits);
     let rows: Vec<usize> = (0..table.rows()).collect();
-    Ranking::of(&Question {
+    Ranking::of(&RankingInput {
         table: &table,
         rows: &rows,
         by: &by.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>(),
@@ -50,6 +50,7 @@ fn ranked(runs: &[Run], by: &[&str], limits: &[ResultLimit]) -> Ranking {
         limits,
         measures: &[ColumnId::PeakVz],
         zipped: &|_| Vec::new(),
+        dominance: true,
     })
     .unwrap()
 }
@@ -173,7 +174,7 @@ fn a_candidate_can_be_dominated_by_a_later_one() {
     ColumnId::PeakKineticEnergy.name().clone_into(&mut energy.name);
     energy.cells = [9.0, 1.0].map(Value::Number).to_vec();
     let table = Table { columns: [table.columns, vec![energy]].concat() };
-    let ranking = Ranking::of(&Question {
+    let ranking = Ranking::of(&RankingInput {
         table: &table,
         rows: &[0, 1],
         by: &["strategy".to_owned()],
@@ -181,6 +182,7 @@ fn a_candidate_can_be_dominated_by_a_later_one() {
         limits: &limits,
         measures: &[ColumnId::PeakVz, ColumnId::PeakKineticEnergy],
         zipped: &|_| Vec::new(),
+        dominance: true,
     })
     .unwrap();
     assert_eq!(order(&ranking), ["a", "b"]);

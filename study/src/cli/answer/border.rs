@@ -19,7 +19,7 @@ pub(super) fn lines(searches: &Searches) -> Vec<String> {
             0 => String::new(),
             open => format!(" ({open} of all are open)"),
         };
-        lines.push(format!("and {more} more{open}: billow borders lists all"));
+        lines.push(format!("and {more} more{open}: billow table --borders lists all"));
     }
     lines
 }

@@ -2,8 +2,9 @@
 
 use serde_json::{Map, json};
 
-use super::effects::sets;
-use crate::analysis::answer::{Answer, Depends, Effect, Extreme, Extremes, PointCounts, Trust};
+use crate::analysis::answer::{Answer, Extreme, PointCounts, Trust, VerdictSensitivity};
+use crate::analysis::ranking::Ranking;
+use crate::cli::print::json_objects;
 use crate::input::value::json_value;
 use crate::job::row::HEADLINE;
 
@@ -11,6 +12,13 @@ mod judged;
 
 /// The answer as JSON keys.
 pub fn json(answer: &Answer) -> serde_json::Value {
+    let all = || answer.comparisons.iter();
+    let compared =
+        all().filter_map(|(name, ranking)| Some(comparison_json(name, ranking.as_ref().ok()?)));
+    let not_compared = all().filter_map(|(parameter, ranking)| {
+        let reason = ranking.as_ref().err()?;
+        Some(json!({"parameter": parameter, "reason": reason}))
+    });
     json!({
         "question": answer.question,
         "jobs": answer.counts.jobs(),
@@ -19,17 +27,11 @@ pub fn json(answer: &Answer) -> serde_json::Value {
         "hardest": extreme_json(answer.hardest.as_ref(), "peak_vz"),
         "most_energy": extreme_json(answer.most_energy.as_ref(), "peak_kinetic_energy"),
         "trust": answer.trust.map(|trust| trust_json(&trust, answer.largest_strain)),
-        "medians": answer.effects.effects.iter().map(effect_json).collect::<Vec<_>>(),
-        "not_compared": answer.effects.not_compared.iter()
-            .map(|(parameter, reason)| json!({"parameter": parameter, "reason": reason}))
-            .collect::<Vec<_>>(),
+        "comparisons": compared.collect::<Vec<_>>(),
+        "not_compared": not_compared.collect::<Vec<_>>(),
         "points_with_runs": answer.points.as_ref().map(points_json),
-        "verdict_depends_on": answer.depends.as_ref().map(depends_json),
+        "verdict_depends_on": answer.sensitivity.as_ref().map(sensitivity_json),
         "safe": answer.safety.as_ref().map(judged::safety),
-        "pairwise": {
-            "parameter": answer.choice,
-            "pairs": answer.pairwise.iter().map(judged::versus).collect::<Vec<_>>(),
-        },
         "borders": answer.searches.as_ref().map(judged::searches),
     })
 }
@@ -45,10 +47,10 @@ fn points_json(points: &PointCounts) -> serde_json::Value {
     })
 }
 
-fn depends_json(depends: &Depends) -> serde_json::Value {
-    let choices = depends.choices.iter();
+fn sensitivity_json(found: &VerdictSensitivity) -> serde_json::Value {
+    let choices = found.choices.iter();
     let choices: Map<_, _> = choices.map(|(name, points)| (name.clone(), json!(points))).collect();
-    json!({ "points": depends.points, "of": depends.of, "choices": choices })
+    json!({ "points": found.points, "of": found.of, "choices": choices })
 }
 
 fn extreme_json(
@@ -84,51 +86,27 @@ fn trust_json(trust: &Trust, largest_strain: f64) -> serde_json::Value {
     })
 }
 
-fn effect_json(effect: &Effect) -> serde_json::Value {
-    let values = effect.values.iter().enumerate().map(|(index, value)| {
-        let mut keys = Map::new();
-        keys.insert("value".to_owned(), json_value(value));
-        for measure in &effect.measures {
-            keys.insert(measure.measure.name().to_owned(), json!(measure.medians[index]));
-        }
-        let (deployed, jobs) = effect.deployed[index];
-        keys.insert("deployed".to_owned(), deployed.into());
-        keys.insert("jobs".to_owned(), jobs.into());
-        serde_json::Value::from(keys)
-    });
-    let listed = |indices: &[usize]| -> Vec<serde_json::Value> {
-        indices.iter().map(|index| json_value(&effect.values[*index])).collect()
-    };
-    let measures = effect.measures.iter().map(|measure| {
-        let mut keys = json!({
-            "measure": measure.measure.name(),
+/// The values of a parameter: the rows of `billow compare --rank`, and the best ones.
+fn comparison_json(name: &str, ranking: &Ranking) -> serde_json::Value {
+    let value = |position: usize| json_value(&ranking.candidates[position].values[0]);
+    let measures = ranking.measures.iter().map(|measure| {
+        let equal = (0..measure.equal.len()).filter(|position| measure.equal[*position]);
+        json!({
+            "measure": measure.column.name,
             "sets": measure.sets,
             "tolerance": measure.tolerance.limit,
-            "equal": measure.extremes == Extremes::Equal,
-        });
-        match &measure.extremes {
-            Extremes::Equal => {}
-            Extremes::Judged { best, worst } => {
-                keys["best"] = listed(best).into();
-                keys["worst"] = listed(worst).into();
-            }
-            Extremes::Range { lowest, highest } => {
-                keys["lowest"] = listed(lowest).into();
-                keys["highest"] = listed(highest).into();
-            }
-        }
-        keys
+            "best": measure.best.map(value),
+            "equal": equal.map(value).collect::<Vec<_>>(),
+        })
     });
-    let left_out = effect.left_out.iter().map(|(value, measure, reason)| {
-        let value = value.as_ref().map(json_value);
-        json!({"value": value, "measure": measure.name(), "reason": reason})
-    });
+    let left_out = ranking.left_out.iter();
+    let left_out = left_out
+        .map(|(values, reason)| json!({"value": values.first().map(json_value), "reason": reason}));
     json!({
-        "parameter": effect.parameter,
-        "unit": effect.unit,
-        "with_it": effect.carried,
-        "sets": sets(effect),
-        "values": values.collect::<Vec<_>>(),
+        "parameter": name,
+        "with_it": ranking.carried,
+        "sets": ranking.sets,
+        "values": json_objects(&ranking.table()),
         "measures": measures.collect::<Vec<_>>(),
         "left_out": left_out.collect::<Vec<_>>(),
     })

@@ -7,18 +7,18 @@ use std::path::Path;
 use billow_solver::output::audit::MAX_LEDGER_RESIDUAL;
 use billow_solver::output::measures::Verdict;
 
-use super::best;
-use super::print::count;
-use crate::analysis::answer::{Answer, Effect, Extreme, Trust};
+use super::print::{count, wrapped};
+use crate::analysis::answer::{Answer, Extreme, Trust};
+use crate::analysis::ranking::Ranking;
 use crate::input::units::{self, Dimension};
 use crate::input::value::{Value, brief_number};
 use crate::job::Status;
 use crate::job::row::{ColumnId, HEADLINE};
+use crate::store::table::Column;
 
 mod border;
-mod effects;
+mod comparisons;
 mod json;
-mod pairwise;
 mod safe;
 
 pub use json::json;
@@ -26,16 +26,12 @@ pub use json::json;
 /// Characters before the text of a line: two spaces, the topic, a space.
 const TOPIC_WIDTH: usize = 11;
 
-/// Most lines on pairs of values. Chosen: three strategies with two or three lines each.
-const MAX_PAIR_LINES: usize = 9;
-
 /// Film stress over Young's modulus above which a note asks for a missing unit. Chosen: no film is linear
 /// up to there, and short peaks of film that is pulled taut reach half of it.
 const MAX_PLAUSIBLE_STRAIN: f64 = 0.1;
 
-/// Prints the answer: one or two lines each for the deployed jobs, the safe points, each search of a border,
-/// the fastest job, the jobs with the highest velocity and energy, the audit, every parameter with a few values,
-/// and each pair of strategies.
+/// Prints the answer: the deployed jobs, the safe points, each search of a border, the fastest job, the jobs with the
+/// highest velocity and energy, the audit, and which value of every parameter is better.
 pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out)?;
     if !answer.question.is_empty() {
@@ -45,21 +41,13 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
         Some(points) => safe::deployed(points, &answer.counts),
         None => deployed(answer),
     };
-    print_topic("deployed", &deployed, out)?;
-    if let Some(depends) = &answer.depends {
-        print_topic("depends", &safe::depends(depends), out)?;
-    }
-    let mut topic = "safe";
-    for line in answer.safety.iter().flat_map(safe::safe) {
-        print_topic(topic, &line, out)?;
-        topic = "";
-    }
+    print_topic("deployed", &[deployed], out)?;
+    let sensitivity = answer.sensitivity.iter().map(safe::sensitivity);
+    print_topic("depends", &sensitivity.collect::<Vec<_>>(), out)?;
+    print_topic("safe", &answer.safety.iter().map(safe::safe).collect::<Vec<_>>(), out)?;
     // The border is what a study with a search asks for, so it stands before the single jobs.
-    let mut topic = "border";
-    for line in answer.searches.iter().flat_map(border::lines) {
-        print_topic(topic, &line, out)?;
-        topic = "";
-    }
+    let borders = answer.searches.iter().flat_map(border::lines);
+    print_topic("border", &borders.collect::<Vec<_>>(), out)?;
     print_extremes(answer, out)?;
     if let Some(trust) = &answer.trust {
         writeln!(out, "  trust    {}", audit(trust))?;
@@ -72,37 +60,15 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
             brief_number(100.0 * answer.largest_strain)
         )?;
     }
-    let asked = answer.safety.is_some() || answer.searches.is_some();
-    effects::print(&answer.effects, asked, out)?;
-    print_pairs(answer, out)
+    print_topic("compared", &comparisons::lines(answer), out)?;
+    print_topic("left out", &comparisons::left_out(answer), out)
 }
 
-/// A line of a topic, wrapped.
-fn print_topic(topic: &str, text: &str, out: &mut dyn Write) -> io::Result<()> {
+/// The lines of a topic, wrapped.
+fn print_topic(topic: &str, texts: &[String], out: &mut dyn Write) -> io::Result<()> {
     let mut topic = topic;
-    for line in best::wrapped(text, TOPIC_WIDTH) {
+    for line in texts.iter().flat_map(|text| wrapped(text, TOPIC_WIDTH)) {
         writeln!(out, "  {topic:<8} {line}")?;
-        topic = "";
-    }
-    Ok(())
-}
-
-/// Each pair of values of the choice, as far as a few lines go.
-fn print_pairs(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
-    let (mut topic, mut printed) = ("pairs", 0);
-    let lines = pairwise::lines(&answer.pairwise);
-    for (index, line) in lines.iter().enumerate() {
-        let needed = best::wrapped(line, TOPIC_WIDTH).len();
-        if index > 0 && printed + needed > MAX_PAIR_LINES {
-            let by = answer.choice.as_deref().unwrap_or_default();
-            let text = format!(
-                "and {}: billow compare --by {by}",
-                count(lines.len() - index, "more pair")
-            );
-            return print_topic("", &text, out);
-        }
-        print_topic(topic, line, out)?;
-        printed += needed;
         topic = "";
     }
     Ok(())
@@ -134,34 +100,37 @@ pub fn print_next(answer: &Answer, root: &Path, out: &mut dyn Write) -> io::Resu
     writeln!(out, "  next     billow table {root}")?;
     writeln!(out, "           billow chart {root}")?;
     if answer.safety.is_some() {
-        writeln!(out, "           billow rank {root}")?;
+        writeln!(out, "           billow compare {root} --rank")?;
     }
     if answer.searches.is_some() {
-        writeln!(out, "           billow borders {root}")?;
+        writeln!(out, "           billow table {root} --borders")?;
     }
     // Compare a named choice (a strategy) first, then a quantity with a unit.
-    let first_with =
-        |unit: fn(&str) -> bool| answer.effects.effects.iter().find(|effect| unit(&effect.unit));
-    let effect = first_with(str::is_empty).or_else(|| first_with(|unit| unit != "1"));
-    if let Some(effect) = effect.or(answer.effects.effects.first())
-        && let Some(base) = effect.values.first()
+    let ranked = answer.comparisons.iter().filter_map(|(_, ranking)| ranking.as_ref().ok());
+    let ranked: Vec<&Ranking> = ranked.collect();
+    let first_with = |unit: fn(&str) -> bool| {
+        ranked.iter().find(|ranking| ranking.by.iter().all(|column| unit(&column.unit)))
+    };
+    let ranking = first_with(str::is_empty).or_else(|| first_with(|unit| unit != "1"));
+    if let Some(ranking) = ranking.or(ranked.first())
+        && let (Some(by), Some(best)) = (ranking.by.first(), ranking.candidates.first())
     {
-        let base = match base {
-            Value::Number(number) => shell_word(&Value::Text(exact(effect, *number))),
+        let base = match &best.values[0] {
+            Value::Number(number) => shell_word(&Value::Text(exact(by, *number))),
             other => shell_word(other),
         };
-        writeln!(out, "           billow compare {root} --by {} --base {base}", effect.parameter)?;
+        writeln!(out, "           billow compare {root} --by {} --base {base}", by.name)?;
     }
     Ok(())
 }
 
 /// A value of a parameter with its unit, if the text gives the number to the last bit; in SI otherwise.
-fn exact(effect: &Effect, si: f64) -> String {
-    let unit = &effect.shown;
+fn exact(by: &Column, si: f64) -> String {
+    let unit = &by.shown;
     let text = format!("{} {}", unit.number(si), unit.symbol());
-    let dimension = Dimension::all().find(|known| known.si() == effect.unit);
+    let dimension = Dimension::all().find(|known| known.si() == by.unit);
     let read = dimension.and_then(|dimension| units::parse(&text, dimension).ok());
-    if read == Some(si) && unit.symbol() != effect.unit { text } else { si.to_string() }
+    if read == Some(si) && unit.symbol() != by.unit { text } else { si.to_string() }
 }
 
 /// A value as one word of a shell command.

@@ -4,8 +4,7 @@
 use std::fmt::Write as _;
 
 use super::job_text;
-use crate::analysis::answer::{Depends, PointCounts, PointMargin, SafeBy, SafeCounts, Safety};
-use crate::cli::best::MAX_VALUES;
+use crate::analysis::answer::{PointCounts, PointMargin, SafeCounts, Safety, VerdictSensitivity};
 use crate::cli::print::count;
 use crate::input::value::brief_number;
 use crate::job::Status;
@@ -48,18 +47,18 @@ pub(super) fn deployed(points: &PointCounts, runs: &Counts) -> String {
 }
 
 /// The points whose verdict depends on a numerical choice.
-pub(super) fn depends(depends: &Depends) -> String {
-    let choices = depends.choices.iter().map(|(name, points)| format!("{name} ({points})"));
+pub(super) fn sensitivity(found: &VerdictSensitivity) -> String {
+    let choices = found.choices.iter().map(|(name, points)| format!("{name} ({points})"));
     format!(
         "the verdict of {} of {} depends on a numerical choice: {}",
-        depends.points,
-        count(depends.of, "point"),
+        found.points,
+        count(found.of, "point"),
         choices.collect::<Vec<_>>().join(", ")
     )
 }
 
-/// The safe points: one line for all, one per value of the choice.
-pub(super) fn safe(safety: &Safety) -> Vec<String> {
+/// The safe points, and the one nearest to a limit.
+pub(super) fn safe(safety: &Safety) -> String {
     let mut all = format!("{} ({})", counts(&safety.counts, "point"), safety.limits.join(", "));
     if !safety.missed.is_empty() {
         let missed = safety.missed.iter().take(MAX_MISSED);
@@ -71,32 +70,9 @@ pub(super) fn safe(safety: &Safety) -> Vec<String> {
     if let Some(nearest) = &safety.nearest {
         let what =
             if safety.counts.safe > 0 { "nearest to a limit" } else { "least beyond a limit" };
-        let _ = write!(all, "; {what}: {}", margin(nearest, None));
+        let _ = write!(all, "; {what}: {}", margin(nearest));
     }
-    let mut lines = vec![all];
-    lines.extend(safety.by.iter().flat_map(by_value));
-    lines
-}
-
-/// One line per value of the choice.
-fn by_value(by: &SafeBy) -> Vec<String> {
-    let values = by.values.iter().take(MAX_VALUES);
-    let mut lines: Vec<String> = values
-        .map(|value| {
-            let shown = by.shown.quantity(&value.value);
-            let mut line = format!("{shown}: {}", counts(&value.counts, "point"));
-            if let Some(safest) = &value.safest {
-                let what = if value.counts.safe > 0 { "safest" } else { "least beyond a limit" };
-                let _ = write!(line, "; {what}: {}", margin(safest, Some(&by.parameter)));
-            }
-            line
-        })
-        .collect();
-    let more = by.values.len() - lines.len();
-    if more > 0 {
-        lines.push(format!("and {more} more values: billow rank --by {}", by.parameter));
-    }
-    lines
+    all
 }
 
 /// "12 of 16 points safe, 1 mixed".
@@ -110,14 +86,12 @@ fn counts(counts: &SafeCounts, noun: &str) -> String {
     text
 }
 
-/// The smallest margin of a point, its measure, its job; without the parameter that the line names already.
-fn margin(margin: &PointMargin, named: Option<&str>) -> String {
-    let mut point = margin.point.clone();
-    point.parameters.retain(|(name, _, _)| named != Some(name));
+/// The smallest margin of a point, its measure, its job.
+fn margin(margin: &PointMargin) -> String {
     format!(
         "smallest_margin {} ({}) at {}",
-        brief_number(point.value),
+        brief_number(margin.point.value),
         margin.measure,
-        job_text(&point)
+        job_text(&margin.point)
     )
 }

@@ -7,7 +7,7 @@ use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::picture::{self, Picture, refused};
 use super::print::print_rows;
 use super::results::{self, StudyArgs};
-use super::{Format, best, output_error};
+use super::{Format, output_error};
 use crate::analysis::replicates::Condensed;
 use crate::chart::Source;
 use crate::chart::borders::Searched;
@@ -235,11 +235,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             None => written.extend(write(results, &kind.file_name(), &svg)?),
         }
     }
-    print(&written, args.output.format(), out)?;
-    if !args.quiet.quiet && args.output.format() == Format::Table {
-        best::print(Some(study), &table, &single.rows);
-    }
-    Ok(())
+    print(&written, args.output.format(), out)
 }
 
 /// The rows that `--jobs` or `--where` choose.

@@ -1,14 +1,17 @@
-//! `billow compare`: compares the values of one parameter, all other parameters being equal.
+//! `billow compare`: compares the values of a parameter, all other parameters being equal, or ranks them.
 
 use std::io::Write;
 
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
-use super::points::{Points, chosen_runs};
-use super::results::{self, StudyArgs};
+use super::points::chosen_runs;
+use super::print::{is_part, print_table};
+use super::results::{self, Opened, StudyArgs};
 use super::{Format, output_error};
-use crate::analysis::compare::{self, Measure, Pair, Sets, Tolerance, measures_with};
+use crate::analysis::compare::{self, Comparison, Measure, Sets, Tolerance, measures_with};
+use crate::analysis::replicates::Condensed;
 use crate::input::fraction::fraction;
 use crate::input::value::Value;
+use crate::job::Status;
 use crate::job::row::{BetterSide, DerivedColumn};
 use crate::platform::error::{Error, Result};
 use crate::platform::nearest::did_you_mean;
@@ -17,8 +20,7 @@ use crate::store::table::select::find;
 use crate::store::table::{Column, Table};
 
 mod notes;
-mod pairs;
-mod summary;
+mod rank;
 
 /// Measures that a table compares by default.
 const DEFAULT_MEASURES: [&str; 2] = ["t_90_z_rim_since_release", "peak_kinetic_energy"];
@@ -28,31 +30,43 @@ const DEFAULT_MEASURES: [&str; 2] = ["t_90_z_rim_since_release", "peak_kinetic_e
 pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
-    /// The parameter to compare by.
-    #[arg(long, value_name = "PARAM")]
-    pub by: String,
+    /// The parameter to compare by; with --rank one or more, comma-separated [default there: strategy if it varies,
+    /// otherwise every parameter].
+    #[arg(long, value_name = "PARAM", value_delimiter = ',', required_unless_present = "rank")]
+    by: Vec<String>,
     /// The value that the other values are compared with; with its unit, as in "1 g/s".
-    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
-    pub base: String,
+    #[arg(
+        long,
+        value_name = "VALUE",
+        allow_hyphen_values = true,
+        required_unless_present = "rank",
+        conflicts_with = "rank"
+    )]
+    base: Option<String>,
+    /// Order the values by limits and measures, the best one first: fewest points not safe, fewest runs not safe, largest
+    /// smallest margin, then the medians of the measures.
+    #[arg(long, conflicts_with_all = ["tie", "runs", "summary"])]
+    rank: bool,
     /// Measures, comma-separated [default: `t_90_z_rim_since_release,peak_kinetic_energy` and, in a study
-    /// with limits, `smallest_margin`; for csv and json all measures for which smaller or larger is better].
+    /// with limits, `smallest_margin`; for csv and json all measures for which smaller or larger is better; with --rank
+    /// `peak_vz,peak_kinetic_energy,t_90_z_rim_since_release`].
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
-    pub measures: Vec<String>,
+    measures: Vec<String>,
     /// Only rows for which this condition holds, as in `N == 6 and M >= 3`.
     #[arg(long = "where", value_name = "CONDITION")]
-    pub condition: Option<String>,
+    condition: Option<String>,
     /// Relative difference up to which a pair is a tie, as in 1% [default: the larger spread of the
     /// measure, by seed or by method, and for points of several runs that their ranges overlap; without
     /// either the values are lower or higher, not better].
     #[arg(long, value_name = "FRACTION")]
-    pub tie: Option<String>,
+    tie: Option<String>,
     /// Pair single runs in a study with replicates [default: points, with the medians of their runs; a
     /// replicate itself is always compared by single runs].
     #[arg(long)]
-    pub runs: bool,
+    runs: bool,
     /// Print only the summary: one row per value and measure.
     #[arg(long)]
-    pub summary: bool,
+    summary: bool,
     #[command(flatten)]
     units: UnitsOption,
     #[command(flatten)]
@@ -63,25 +77,8 @@ pub struct Args {
     quiet: QuietOption,
 }
 
-/// The pairs and measures to compare.
-struct Comparison<'a> {
-    /// The rows that are paired: single runs, or points as medians.
-    table: &'a Table,
-    /// The points, where they are paired.
-    points: Option<&'a Points<'a>>,
-    by: &'a Column,
-    sets: Sets,
-    pairs: Vec<Pair>,
-    measures: Vec<Measure<'a>>,
-    /// The parameters over which a point has its runs.
-    replicates: Vec<String>,
-    /// The meshes from which the values of a point are extrapolated; empty without any.
-    meshes: Vec<u32>,
-    /// Whether the summary has the intervals of its proportions.
-    with_intervals: bool,
-}
-
-/// Runs `billow compare`: one row per pair, then a summary with one row per value and measure.
+/// Runs `billow compare`: one row per pair, then a summary with one row per value and measure; with --rank one row per
+/// value.
 ///
 /// # Errors
 /// An unknown parameter, value, measure or column; results that cannot be read.
@@ -89,68 +86,95 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let condition = args.condition.as_deref();
     let mut opened = results::open(&args.study, &args.set.set, &args.units)?;
     opened.add_keys(&[], condition);
-    let results::Opened { stored, table } = opened;
-    print(args, &stored, &table, out)
-}
-
-/// Compares the rows of a table, and prints the result.
-fn print(args: &Args, stored: &Stored<'_>, table: &Table, out: &mut dyn Write) -> Result<()> {
-    let by = parameter(table, &args.by)?;
-    let base = base(stored, by, &args.base)?;
+    let Opened { stored, table } = opened;
+    let Some(base) = &args.base else { return rank::run(args, &stored, &table, out) };
+    let by = parameter(&table, &args.by.join(","))?;
+    let base = self::base(&stored, by, base)?;
     let format = args.output.format();
     let zipped = |name: &str| stored.study.zipped_with(name);
     let varied = stored.study.replicates();
     let single = args.runs || varied.contains(&by.name);
     let replicates = if single { Vec::new() } else { varied.clone() };
-    let rows = chosen_runs(table, args.condition.as_deref(), &replicates)?;
-    let points = (!replicates.is_empty()).then(|| Points::of(table, &rows, &replicates));
+    let rows = chosen_runs(&table, condition, &replicates)?;
+    let points = (!replicates.is_empty()).then(|| Condensed::of(&table, &rows, &replicates));
     let given = args.tie.as_deref().map(tie).transpose()?.map(Tolerance::given);
     // A compared replicate is no repetition.
-    let repeated: Vec<String> = varied.iter().filter(|name| **name != by.name).cloned().collect();
-    let paired = points.as_ref().map_or(table, |points| &points.condensed.table);
+    let repeated: Vec<String> = varied.into_iter().filter(|name| *name != by.name).collect();
+    let paired = points.as_ref().map_or(&table, |points| &points.table);
     let paired_rows: Vec<usize> = match &points {
-        Some(points) => (0..points.condensed.runs.len()).collect(),
+        Some(points) => (0..points.runs.len()).collect(),
         None => rows.clone(),
     };
     let sets = Sets::new(paired, &paired_rows, &by.name, &zipped(&by.name));
     let (pairs, alone) = compare::pairs(paired, &sets, &by.name, &base);
-    let measures = measures(paired, &args.measures, format)?
-        .into_iter()
-        .map(|column| match (given, &points) {
-            (Some(given), _) => Measure::of_runs(column, given),
-            (None, Some(points)) => {
-                Measure::of_points(&points.condensed, &paired_rows, column, &zipped("seed"))
-            }
-            (None, None) => {
-                let over = Tolerance::over(table, &rows, column, &repeated, &zipped("seed"));
-                Measure::of_runs(column, over).with_errors(table)
-            }
-        })
-        .collect();
-    let comparison = Comparison {
-        table: paired,
-        points: points.as_ref(),
-        by,
-        sets,
-        pairs,
-        measures,
-        replicates,
-        meshes: stored.study.meshes(),
-        with_intervals: !varied.is_empty() || !stored.study.result_limits().is_empty(),
+    let measure = |column| match (given, &points) {
+        (Some(given), _) => Measure::of_runs(column, given),
+        (None, Some(points)) => Measure::of_points(points, &paired_rows, column, &zipped("seed")),
+        (None, None) => {
+            let over = Tolerance::over(&table, &rows, column, &repeated, &zipped("seed"));
+            Measure::of_runs(column, over).with_errors(&table)
+        }
     };
+    let columns = measures(paired, &args.measures, format)?;
+    let measures = columns.into_iter().map(measure).collect();
+    let comparison =
+        Comparison { table: paired, points: points.as_ref(), by, sets, pairs, measures };
     if !args.summary {
-        comparison.print_pairs(format, out)?;
+        print(&comparison.pairs(), &is_for_reader(&comparison), format, out)?;
     }
     if args.summary || format == Format::Table {
         if !args.summary {
             writeln!(out).map_err(output_error)?;
         }
-        comparison.print_tallies(format, out)?;
+        // A table has no columns for outcomes that no pair has, and differences only where a measure has no ratio.
+        let is_signed = comparison.measures.iter().any(Measure::is_signed);
+        let is_shown = |column: &Column| match column.name.as_str() {
+            "other_better" | "base_better" | "ties" => true,
+            name if name.ends_with("_difference") => is_signed,
+            name => name.ends_with("_ratio") || !column.is_empty(),
+        };
+        print(&comparison.summary(format == Format::Table), &is_shown, format, out)?;
     }
     if !args.quiet.quiet {
-        comparison.print_notes(&base, &alone);
+        let meshes = stored.study.meshes();
+        notes::print(&comparison, &base, &alone, &replicates, &meshes);
     }
     Ok(())
+}
+
+/// Prints a whole table; to a reader only some columns.
+fn print(
+    table: &Table,
+    is_shown: &dyn Fn(&Column) -> bool,
+    format: Format,
+    out: &mut dyn Write,
+) -> Result<()> {
+    let for_reader = |column: &&Column| !is_part(table, column) && is_shown(column);
+    let columns =
+        table.columns.iter().filter(|column| format != Format::Table || for_reader(column));
+    let rows: Vec<usize> = (0..table.rows()).collect();
+    print_table(table, &columns.collect::<Vec<_>>(), &rows, format, out)
+}
+
+/// The columns of pairs that a reader sees: no jobs, a status only where a job is not done, the ratio of a measure, or the
+/// difference where it has none.
+fn is_for_reader(comparison: &Comparison<'_>) -> impl Fn(&Column) -> bool {
+    let done = |row: usize| comparison.table.status(row) == Some(Status::Done);
+    let all_done = comparison.pairs.iter().all(|pair| done(pair.base) && done(pair.other));
+    let signed: Vec<String> = comparison
+        .measures
+        .iter()
+        .map(|measure| {
+            let hidden = if measure.is_signed() { "ratio" } else { "difference" };
+            format!("{}_{hidden}", measure.column.name)
+        })
+        .collect();
+    move |column| match column.name.as_str() {
+        "base_job" | "other_job" | "base_verdict" | "other_verdict" => false,
+        "base_status" | "other_status" => !all_done,
+        "base_deployed" | "other_deployed" => !column.is_empty(),
+        name => !signed.iter().any(|hidden| hidden == name),
+    }
 }
 
 fn parameter<'a>(table: &'a Table, name: &str) -> Result<&'a Column> {

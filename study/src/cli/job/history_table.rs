@@ -4,10 +4,12 @@ use std::io::Write;
 
 use super::{Args, Inspected, si_unit};
 use crate::cli::Format;
-use crate::cli::print::{Heading, print_quantities};
+use crate::cli::print::print_table;
 use crate::input::value::Value;
+use crate::job::row::CellType;
 use crate::platform::error::{Error, Result};
 use crate::platform::nearest::did_you_mean;
+use crate::store::table::{Column, Table};
 
 /// Columns of a table by default.
 const DEFAULT_COLUMNS: [&str; 8] = [
@@ -45,19 +47,19 @@ pub(super) fn print(
     let samples = stored.history.len();
     let every = args.every.map_or(1, |every| every as usize);
     let kept = (0..samples).filter(|sample| sample % every == 0 || sample + 1 == samples);
-    let cell = |(_, values): &Series<'_>, sample: usize| {
-        values.get(sample).map_or(Value::Null, |value| Value::Number(*value))
-    };
-    let rows: Vec<Vec<Value>> =
-        kept.map(|sample| columns.iter().map(|series| cell(series, sample)).collect()).collect();
-    let heading = |(name, _): &Series<'_>| {
+    let kept: Vec<usize> = kept.collect();
+    let column = |(name, values): &Series<'_>| {
+        let cell = |value: Option<&f64>| value.map_or(Value::Null, |value| Value::Number(*value));
+        let cells = (0..samples).map(|sample| cell(values.get(sample)));
         let si = si_unit(&job.stored, name).unwrap_or_default();
-        Heading { name: (*name).to_owned(), unit: job.stored.units.of(name, &si) }
+        let shown = job.stored.units.of(name, &si);
+        Column { unit: si, shown, ..Column::plain(name, CellType::Number, cells.collect()) }
     };
-    let headings: Vec<Heading> = columns.iter().map(heading).collect();
-    print_quantities(&headings, &rows, format, out)?;
+    let table = Table { columns: columns.iter().map(column).collect() };
+    let all: Vec<&Column> = table.columns.iter().collect();
+    print_table(&table, &all, &kept, format, out)?;
     if format == Format::Table && !args.quiet.quiet {
-        eprintln!("{} of {samples} samples", rows.len());
+        eprintln!("{} of {samples} samples", kept.len());
     }
     Ok(())
 }

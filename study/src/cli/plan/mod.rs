@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::PathBuf;
 
+mod advice;
 mod forecast;
 mod lengths;
 mod results;
@@ -12,17 +13,19 @@ use forecast::forecast;
 
 use super::memory::Memory;
 use super::options::{OutputOptions, QuietOption, ResultsOption, SetOption, UnitsOption};
-use super::print::{self, Heading, print_quantities, print_rows};
+use super::print::{self, print_rows, print_table};
 use super::results::results_folder;
 use super::{Format, changes, notes, output_error};
-use crate::input::units::{DisplayUnit, DisplayUnits};
+use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Parameters;
 use crate::job::point::Point;
+use crate::job::row::CellType;
 use crate::platform::error::Result;
 use crate::platform::files::Disk;
 use crate::store::results::Results;
 use crate::store::stored::other_physics;
+use crate::store::table::{Column, Table};
 use crate::study::Study;
 use crate::study::plan::{Generation, PlanCounts, next_jobs};
 
@@ -38,6 +41,9 @@ pub struct Args {
     units: UnitsOption,
     #[command(flatten)]
     set: SetOption,
+    /// Name the cheapest model and mesh that keep this relative error of every measure but `peak_vz`, as in "5 %".
+    #[arg(long, value_name = "ERROR")]
+    accuracy: Option<String>,
     /// Print only the numbers of points and jobs.
     #[arg(long)]
     summary: bool,
@@ -53,6 +59,7 @@ pub struct Args {
 /// When the study is invalid or the output cannot be written.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let study = Study::load(&args.study, &args.set.set)?;
+    let advice = advice::advice(&study, args.accuracy.as_deref())?;
     let Some(generation) = next_jobs(&study, &[]) else { return Ok(()) };
     let format = args.output.format();
     let counts = PlanCounts::of(&study, &generation);
@@ -66,9 +73,10 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         print_progress_and_forecast(args, &study, &generation)?;
         notes::print_warnings(&study);
         notes::print(&study);
-        for note in results::notes(&study, &counts) {
-            eprintln!("{note}");
-        }
+        results::notes(&study, &counts)
+            .into_iter()
+            .chain(advice)
+            .for_each(|note| eprintln!("{note}"));
     }
     Ok(())
 }
@@ -82,12 +90,39 @@ fn print_points(
 ) -> Result<()> {
     let format = args.output.format();
     let units = args.units.apply(study.display_units(), &|name| si_unit(study, name))?;
-    let rows: Vec<Vec<Value>> = generation
-        .points
-        .iter()
-        .map(|point| row(point, format == Format::Table, &|name| units.of(name, study.unit(name))))
-        .collect();
-    print_quantities(&headings(study, &units), &rows, format, out)
+    let unit = |name: &str| units.of(name, study.unit(name));
+    let points = &generation.points;
+    let column = |name: &str, shown: DisplayUnit, cell: &dyn Fn(&Point) -> Value| {
+        // Cells of a parameter can be numbers and words.
+        Column { shown, ..Column::plain(name, CellType::Text, points.iter().map(cell).collect()) }
+    };
+    let text = |name: &str, of: &dyn Fn(&Point) -> Option<String>| {
+        column(name, DisplayUnit::si(""), &|point| of(point).map_or(Value::Null, Value::Text))
+    };
+    let parameters = study.parameter_names();
+    let mut columns = vec![text("job", &|point| Some(point.job.id.as_str().to_owned()))];
+    columns.extend(parameters.iter().enumerate().map(|(index, name)| {
+        column(name, unit(name), &|point| point.job.parameters[index].1.clone())
+    }));
+    columns.push(text("status", &|point| {
+        Some(if point.infeasible.is_none() { "job" } else { "infeasible" }.to_owned())
+    }));
+    columns.extend(SOLVED.iter().enumerate().map(|(index, (name, si))| {
+        let is_parameter = parameters.iter().any(|parameter| parameter == name);
+        let shown = if is_parameter { format!("{name}_resolved") } else { (*name).to_owned() };
+        column(&shown, units.of(name, si), &|point| solved(point)[index].clone())
+    }));
+    let infeasible = |point: &Point| point.infeasible.clone();
+    columns.push(text("reason", &|point| Some(infeasible(point)?.reason)));
+    columns.push(text("nearest", &|point| {
+        infeasible(point)
+            .filter(|found| !found.nearest.is_empty())
+            .map(|found| found.nearest_text())
+    }));
+    columns.push(text("note", &|point| (!point.merged.is_empty()).then(|| note(point, &unit))));
+    let table = Table { columns };
+    let rows: Vec<usize> = (0..table.rows()).collect();
+    print_table(&table, &table.columns.iter().collect::<Vec<_>>(), &rows, format, out)
 }
 
 /// Prints how many jobs are finished, if the results folder belongs to this study, the lengths in use,
@@ -132,50 +167,6 @@ fn si_unit(study: &Study, name: &str) -> Option<String> {
     let is_parameter = study.parameter_names().iter().any(|parameter| parameter == name);
     let unit = if is_parameter { Some(study.unit(name)) } else { solved };
     unit.map(str::to_owned)
-}
-
-/// The columns, each with the unit in which it is shown.
-fn headings(study: &Study, units: &DisplayUnits) -> Vec<Heading> {
-    let parameters = study.parameter_names();
-    let mut headings = vec![Heading::plain("job")];
-    headings.extend(
-        parameters
-            .iter()
-            .map(|name| Heading { name: name.clone(), unit: units.of(name, study.unit(name)) }),
-    );
-    headings.push(Heading::plain("status"));
-    headings.extend(SOLVED.iter().map(|(name, si)| {
-        let is_parameter = parameters.iter().any(|parameter| parameter == name);
-        let shown = if is_parameter { format!("{name}_resolved") } else { (*name).to_owned() };
-        Heading { name: shown, unit: units.of(name, si) }
-    }));
-    headings.extend(["reason", "nearest", "note"].map(Heading::plain));
-    headings
-}
-
-fn row(point: &Point, short: bool, unit: &dyn Fn(&str) -> DisplayUnit) -> Vec<Value> {
-    let id = if short { point.job.id.short() } else { point.job.id.as_str() };
-    let mut row = vec![Value::Text(id.to_owned())];
-    row.extend(point.job.parameters.iter().map(|(_, value)| value.clone()));
-    let text = |text: &str| Value::Text(text.to_owned());
-    match &point.infeasible {
-        None => {
-            row.push(text("job"));
-            row.extend(solved(point));
-            row.extend([Value::Null, Value::Null]);
-        }
-        Some(infeasible) => {
-            row.push(text("infeasible"));
-            row.extend(solved(point));
-            row.push(text(&infeasible.reason));
-            row.push(match infeasible.nearest.as_slice() {
-                [] => Value::Null,
-                _ => Value::Text(infeasible.nearest_text()),
-            });
-        }
-    }
-    row.push(if point.merged.is_empty() { Value::Null } else { Value::Text(note(point, unit)) });
-    row
 }
 
 /// The cells of [`SOLVED`].

@@ -2,7 +2,7 @@
 
 use super::{DEPLOYED, RANGE, RUNS};
 use crate::accuracy::is_error_column;
-use crate::analysis::replicates::{Condensed, Runs};
+use crate::analysis::replicates::{Condensed, Runs, integer, proportion_columns};
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::proportion::Proportion;
@@ -20,6 +20,10 @@ pub fn columns(table: &Table, condensed: &Condensed) -> Vec<Column> {
     let counted = |name: &str, meaning: &str, count: fn(&Runs) -> usize| {
         let cells = condensed.runs.iter().map(|runs| integer(count(runs)));
         column(name, CellType::Integer, meaning, cells.collect())
+    };
+    let proportions = |name: &str, what: &str, of: fn(&Runs) -> Proportion| {
+        let all: Vec<Proportion> = condensed.runs.iter().map(of).collect();
+        proportion_columns(name, what, &all)
     };
     let mut new = vec![counted(RUNS, "number of runs: different jobs", |runs| runs.rows.len())];
     let parameters = condensed.table.parameters().count();
@@ -39,7 +43,7 @@ pub fn columns(table: &Table, condensed: &Condensed) -> Vec<Column> {
                 new.push(median.clone());
             }
             name if name == DerivedColumn::Safe.name() => {
-                new.extend(proportion(name, "are safe", condensed, |runs| runs.safe));
+                new.extend(proportions(name, "are safe", |runs| runs.safe));
             }
             name if name == DerivedColumn::SmallestMargin.name() => new.extend([
                 with("", &condensed.least),
@@ -58,7 +62,7 @@ pub fn columns(table: &Table, condensed: &Condensed) -> Vec<Column> {
             new.push(counted("runs_not_trusted", not_trusted, |runs| runs.not_trusted));
             new.push(counted("runs_failed", "number of failed runs", |runs| runs.failed));
             new.push(counted("runs_pending", "number of runs to come", |runs| runs.pending));
-            new.extend(proportion(DEPLOYED, "deployed", condensed, |runs| runs.deployed));
+            new.extend(proportions(DEPLOYED, "deployed", |runs| runs.deployed));
         }
     }
     // Keys that a condition or an option names: the runs of a point have one value, or none is given.
@@ -76,41 +80,6 @@ fn common(column: &Column, rows: &[usize]) -> Value {
     if same { first.clone() } else { Value::Null }
 }
 
-/// The four columns of a proportion: k, n, and its interval.
-fn proportion(
-    name: &str,
-    what: &str,
-    condensed: &Condensed,
-    of: fn(&Runs) -> Proportion,
-) -> Vec<Column> {
-    let all: Vec<Proportion> = condensed.runs.iter().map(of).collect();
-    let numbers = |number: fn(&Proportion) -> usize| {
-        all.iter().map(|one| integer(number(one))).collect::<Vec<Value>>()
-    };
-    let ends = |end: usize| -> Vec<Value> {
-        let cell = |one: &Proportion| match one.of {
-            0 => Value::Null,
-            _ => Value::Number(one.wilson()[end]),
-        };
-        all.iter().map(cell).collect()
-    };
-    let count = format!("number of runs that {what}");
-    let interval =
-        |end: &str| format!("{end} end of the 95 % interval (Wilson) of those that {what}");
-    let named = |end: &str| format!("{name}{end}");
-    vec![
-        column(name, CellType::Integer, &count, numbers(|one| one.met)),
-        column(
-            &named("_of"),
-            CellType::Integer,
-            "number of runs that were judged",
-            numbers(|one| one.of),
-        ),
-        column(&named("_low"), CellType::Number, &interval("lower"), ends(0)),
-        column(&named("_high"), CellType::Number, &interval("upper"), ends(1)),
-    ]
-}
-
 fn column(name: &str, cell_type: CellType, meaning: &str, cells: Vec<Value>) -> Column {
     Column {
         name: name.to_owned(),
@@ -120,8 +89,4 @@ fn column(name: &str, cell_type: CellType, meaning: &str, cells: Vec<Value>) -> 
         meaning: meaning.to_owned(),
         cells,
     }
-}
-
-fn integer(number: usize) -> Value {
-    Value::Integer(i64::try_from(number).unwrap_or(i64::MAX))
 }

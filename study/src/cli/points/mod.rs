@@ -1,11 +1,8 @@
 //! The points of a study with replicates: which runs a command reads, and one row per point.
 
-use super::legend::PLUS_MINUS;
-use super::range;
-use crate::accuracy::error_column;
+use super::print::shown_cells;
 use crate::analysis::compare::measured;
 use crate::analysis::replicates::{self, Condensed, Runs};
-use crate::analysis::statistics::Spread;
 use crate::input::value::Value;
 use crate::input::{expression, keys};
 use crate::job::proportion::Proportion;
@@ -22,12 +19,10 @@ pub const RUNS: &str = "runs";
 /// Number of runs that deployed.
 pub const DEPLOYED: &str = "deployed";
 /// Ends of the names of the smallest and the largest value of a measure.
-pub const RANGE: [&str; 2] = ["_least", "_largest"];
-/// Significant digits of a margin.
-const MARGIN_DIGITS: usize = 3;
+const RANGE: [&str; 2] = ["_least", "_largest"];
 
 /// One row per point.
-pub struct Points<'a> {
+pub struct PointTable<'a> {
     /// Every run.
     runs_table: &'a Table,
     /// The runs as medians.
@@ -54,7 +49,7 @@ pub fn chosen_runs(
         return filtered(table, condition);
     }
     let all: Vec<usize> = (0..table.rows()).collect();
-    let points = Points::of(table, &all, replicates);
+    let points = PointTable::of(table, &all, replicates);
     if !names.iter().any(|name| points.is_result(name)) {
         return filtered(table, condition);
     }
@@ -62,7 +57,7 @@ pub fn chosen_runs(
     Ok(kept.iter().flat_map(|row| points.condensed.runs[*row].rows.clone()).collect())
 }
 
-impl<'a> Points<'a> {
+impl<'a> PointTable<'a> {
     /// The points of some rows of a table.
     pub fn of(table: &'a Table, rows: &[usize], replicates: &[String]) -> Self {
         let condensed = Condensed::of(table, rows, replicates);
@@ -92,50 +87,36 @@ impl<'a> Points<'a> {
         table
     }
 
-    /// The cell of a column for a reader: a measure with its range, a number of runs as a proportion. Numbers
-    /// that stay numbers are SI.
-    pub fn cell(&self, column: &Column, row: usize) -> Value {
-        let runs = &self.condensed.runs[row];
-        let proportion = |proportion: Proportion| match proportion.of {
-            0 => Value::Null,
-            _ => Value::Text(proportion.to_string()),
-        };
-        match column.name.as_str() {
-            RUNS => Value::Text(runs_text(runs)),
-            DEPLOYED => proportion(runs.deployed),
-            name if name == DerivedColumn::Safe.name() => proportion(runs.safe),
-            name if name == DerivedColumn::SmallestMargin.name() => match column.cells[row] {
-                Value::Number(margin) => Value::Number(range::rounded(margin, MARGIN_DIGITS)),
-                _ => Value::Null,
-            },
-            _ => self.range(column, row).unwrap_or_else(|| column.cells[row].clone()),
-        }
-    }
-
-    /// A measure with its range and its mesh error; `None` for a column that has none.
-    pub fn range(&self, column: &Column, row: usize) -> Option<Value> {
-        self.table.column(&format!("{}{}", column.name, RANGE[0]))?;
-        let Some(spread) = self.spread(&column.name, row) else { return Some(Value::Null) };
-        let text = range::text(&spread, &column.shown, self.condensed.runs[row].measured.len());
-        // The mesh error is that of the median.
-        let error = error_column(&column.name).and_then(|name| self.spread(name, row));
-        Some(Value::Text(match error {
-            Some(error) => {
-                let alone = range::with_error(spread.median, error.median, &column.shown);
-                match (alone.split_once(PLUS_MINUS), spread.least < spread.largest) {
-                    (Some((_, error)), true) => format!("{text}{PLUS_MINUS}{error}"),
-                    _ => alone,
+    /// The table as a reader sees it: how the runs of each point ended, and the number of runs that have a measure, where
+    /// not all have it.
+    pub fn for_reader(&self) -> Table {
+        let cells = |column: &Column| -> Vec<Value> {
+            let has_range = self.table.column(&format!("{}{}", column.name, RANGE[0])).is_some();
+            let cell = |(runs, (row, cell)): (&Runs, (usize, &Value))| {
+                if column.name == RUNS {
+                    return Value::Text(runs_text(runs));
                 }
-            }
-            None => text,
-        }))
+                let all = runs.measured.len();
+                let with = if has_range { self.runs_with(&column.name, runs) } else { all };
+                if with == 0 || with == all {
+                    return cell.clone();
+                }
+                let text = shown_cells(&self.table, column, &[row])[0].short();
+                Value::Text(format!("{text} ({with} of {all})"))
+            };
+            self.condensed.runs.iter().zip(column.cells.iter().enumerate()).map(cell).collect()
+        };
+        let columns = self.table.columns.iter();
+        let columns = columns.map(|column| column.like(column.name.clone(), cells(column)));
+        Table { columns: columns.collect() }
     }
 
-    /// Statistics of a measure over the runs of a point.
-    pub fn spread(&self, measure: &str, row: usize) -> Option<Spread> {
-        let column = replicates::source(self.runs_table, self.runs_table.column(measure)?);
-        let runs = self.condensed.runs[row].measured.iter();
-        Spread::of(runs.filter_map(|row| measured(self.runs_table, column, *row)))
+    /// Number of the runs of a point that have a measure.
+    fn runs_with(&self, measure: &str, runs: &Runs) -> usize {
+        let Some(column) = self.runs_table.column(measure) else { return runs.measured.len() };
+        let column = replicates::source(self.runs_table, column);
+        let has = |row: &&usize| measured(self.runs_table, column, **row).is_some();
+        runs.measured.iter().filter(has).count()
     }
 
     /// Number of all runs.

@@ -1,175 +1,138 @@
-//! The columns of the single runs: those asked for, or those that fit on a line.
+//! The columns of a table: those asked for, or those that fit on a line.
 
-use super::{MAX_LINE_WIDTH, MAX_WIDE_LINE_WIDTH};
-use crate::accuracy::error_column;
-use crate::cli::print::Heading;
-use crate::cli::{Format, range};
-use crate::input::value::Value;
+use super::{Args, MAX_LINE_WIDTH, MAX_WIDE_LINE_WIDTH, sorting};
+use crate::cli::Format;
+use crate::cli::points::{DEPLOYED, RUNS};
+use crate::cli::print::{is_part, width};
 use crate::job::row::{ColumnId, DerivedColumn};
-use crate::platform::error::Result;
-use crate::store::table::select::find;
+use crate::platform::error::{Error, Result};
+use crate::store::table::select;
 use crate::store::table::{Column, Table};
 
 /// The parameter whose values are compared for how gentle they are.
 const STRATEGY: &str = "strategy";
-
 /// Start of the name of the margin to the limit of a measure.
-pub const MARGIN: &str = "margin_";
+const MARGIN: &str = "margin_";
+/// Measures shown by default, as far as they fit.
+const MAIN_MEASURES: [ColumnId; 8] = [
+    ColumnId::T90ZRim,
+    ColumnId::PeakKineticEnergy,
+    ColumnId::PeakVz,
+    ColumnId::FinalPressure,
+    ColumnId::TDeployed,
+    ColumnId::VolumeRatio,
+    ColumnId::HeightRatio,
+    ColumnId::Overshoot,
+];
 
-/// Columns shown after the parameters by default, in this order, as far as they fit. Where strategies are
-/// compared, the speed stands beside the energy, although it is noisy: both measure the impact.
-pub fn main_names(table: &Table) -> Vec<&str> {
-    let mut names: Vec<&str> = vec![
-        ColumnId::Status.name(),
-        ColumnId::Verdict.name(),
-        DerivedColumn::Safe.name(),
-        DerivedColumn::SmallestMargin.name(),
-        DerivedColumn::SmallestMarginOf.name(),
-        DerivedColumn::VerdictDependsOn.name(),
-    ];
-    let measures = limited(table).into_iter().chain(main_measures(table));
-    for name in measures {
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
-    names
-}
-
-/// The measures among them.
-pub fn main_measures(table: &Table) -> Vec<&'static str> {
-    let with_speed = compares_strategies(table);
-    let measures = any_main_measures();
-    let shown = measures.filter(|column| with_speed || *column != ColumnId::PeakVz);
-    shown.map(ColumnId::name).collect()
-}
-
-/// The measures among them, whatever the study compares.
-pub fn any_main_measures() -> impl Iterator<Item = ColumnId> {
-    let measures = [
-        ColumnId::T90ZRim,
-        ColumnId::PeakKineticEnergy,
-        ColumnId::PeakVz,
-        ColumnId::FinalPressure,
-        ColumnId::TDeployed,
-        ColumnId::VolumeRatio,
-        ColumnId::HeightRatio,
-        ColumnId::Overshoot,
-    ];
-    measures.into_iter()
-}
-
-/// The measures that have a limit.
-pub fn limited(table: &Table) -> Vec<&str> {
-    let names = table.columns.iter().filter_map(|column| column.name.strip_prefix(MARGIN));
-    names.filter(|name| ColumnId::from_name(name).is_some()).collect()
-}
-
-/// Whether a study compares strategies.
-pub fn compares_strategies(table: &Table) -> bool {
-    table.parameters().any(|column| column.name == STRATEGY)
-}
-
-/// The columns to print.
+/// The columns to print of the rows that are listed, which are runs or points of several.
 ///
 /// # Errors
-/// An unknown column.
+/// An unknown column, or one of single runs.
 pub fn chosen<'a>(
-    table: &'a Table,
-    names: &[String],
-    sort: &[String],
+    listed: &'a Table,
+    runs: &Table,
+    args: &Args,
     format: Format,
 ) -> Result<Vec<&'a Column>> {
-    match names {
-        [] if format == Format::Table => Ok(main_columns(table, sort)),
-        [] => Ok(table.columns.iter().collect()),
-        [all] if all == "all" => Ok(table.columns.iter().collect()),
-        names => names.iter().map(|name| find(table, "--columns", name.trim())).collect(),
+    match args.columns.as_slice() {
+        [] if format == Format::Table => Ok(main_columns(listed, &args.sort)),
+        [name] if name != "all" => Ok(vec![find(listed, runs, "--columns", name.trim())?]),
+        [] | [_] if format == Format::Table => Ok(all(listed)),
+        [] | [_] => Ok(in_order(listed)),
+        names => names.iter().map(|name| find(listed, runs, "--columns", name.trim())).collect(),
     }
 }
 
-/// The columns that sort the rows and are not among these.
-pub fn sorting<'a>(table: &'a Table, sort: &[String], known: &[&Column]) -> Vec<&'a Column> {
-    let mut columns: Vec<&Column> = Vec::new();
-    for name in sort.iter().map(|key| key.split(':').next().unwrap_or_default().trim()) {
-        let column = table.column(name);
-        let is_new =
-            |column: &&Column| known.iter().chain(&columns).all(|known| known.name != column.name);
-        columns.extend(column.filter(is_new));
+/// The column with that name of the rows that are listed, for which `option` asks.
+///
+/// # Errors
+/// When there is none, also when only single runs have it.
+pub fn find<'a>(listed: &'a Table, runs: &Table, option: &str, name: &str) -> Result<&'a Column> {
+    if runs.column(name).is_some() && listed.column(name).is_none() {
+        let problem = "is a column of single runs, and each row is a point of several runs";
+        let hint = "--runs prints the single runs";
+        let allowed = "a column of `--columns all`";
+        return Err(Error::invalid_option(option, name, problem, allowed, hint));
+    }
+    select::find(listed, option, name)
+}
+
+/// Every column, for points the parameters first.
+fn in_order(table: &Table) -> Vec<&Column> {
+    let mut columns: Vec<&Column> = table.columns.iter().collect();
+    if is_of_points(table) {
+        columns[..=table.parameters().count()].rotate_left(1);
     }
     columns
 }
 
-/// Job, parameters, the columns that sort the rows, and the main columns that fit on a line.
+/// Every column that a reader does not see in the cell of another one.
+pub fn all(table: &Table) -> Vec<&Column> {
+    let is_count = |column: &Column| is_of_points(table) && column.name.starts_with("runs_");
+    let mut columns = in_order(table);
+    columns.retain(|column| !is_part(table, column) && !is_count(column));
+    columns
+}
+
+fn is_of_points(table: &Table) -> bool {
+    table.columns.first().is_some_and(|column| column.name == RUNS)
+}
+
+/// Parameters, the columns that sort the rows, how the runs ended, what the limits say, then the measures that fit on a
+/// line.
 fn main_columns<'a>(table: &'a Table, sort: &[String]) -> Vec<&'a Column> {
-    let mut columns: Vec<&Column> = table.columns.iter().take(1).collect();
+    let of_points = is_of_points(table);
+    let mut columns: Vec<&Column> = table.columns.iter().take(usize::from(!of_points)).collect();
     columns.extend(table.parameters());
-    columns.extend(sorting(table, sort, &columns));
-    let mut width: usize = columns.iter().map(|column| width(table, column) + 2).sum();
-    let shown: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
-    let limited = limited(table);
-    let names = main_names(table);
-    let mains = names.iter().filter(|name| !shown.contains(name));
-    // What the limits say takes the room of three columns.
-    let judged = table.column(DerivedColumn::Safe.name()).is_some();
-    let most = if judged { MAX_WIDE_LINE_WIDTH } else { MAX_LINE_WIDTH };
-    for column in mains.filter_map(|name| table.column(name)).collect::<Vec<_>>() {
-        let has_values = column.cells.iter().any(|cell| *cell != Value::Null);
-        let always =
-            is_always_shown(&column.name, has_values) || limited.contains(&column.name.as_str());
-        let fits = width + self::width(table, column) <= most;
-        // The speed does not take the place of the energy.
-        let partner = ColumnId::PeakKineticEnergy.name();
-        let alone = column.name == ColumnId::PeakVz.name()
-            && columns.iter().all(|known| known.name != partner);
-        if always || (has_values && fits && !alone) {
-            width += self::width(table, column) + 2;
+    for column in sorting(sort).filter_map(|name| table.column(name)) {
+        if columns.iter().all(|known| known.name != column.name) {
             columns.push(column);
         }
     }
-    columns
-}
-
-/// Whether a column is shown even if it makes the line too long: the status, and what the limits say.
-fn is_always_shown(name: &str, has_values: bool) -> bool {
-    let judged =
-        [DerivedColumn::Safe, DerivedColumn::SmallestMargin, DerivedColumn::VerdictDependsOn];
-    name == ColumnId::Status.name()
-        || (has_values && judged.iter().any(|column| column.name() == name))
-}
-
-/// A column as the head of a table has it.
-pub fn heading(column: &Column) -> Heading {
-    Heading { name: column.name.clone(), unit: column.shown.clone() }
-}
-
-/// Width of a column, characters.
-fn width(table: &Table, column: &Column) -> usize {
-    let rows = 0..column.cells.len();
-    let widest = rows.map(|row| match shown(table, column, row, Format::Table) {
-        Value::Null => 1,
-        value => column.shown.text(&value).chars().count(),
+    let has_strategies = table.parameters().any(|column| column.name == STRATEGY);
+    let loads = [ColumnId::PeakKineticEnergy, ColumnId::PeakVz];
+    let limits = table.columns.iter().filter_map(|column| column.name.strip_prefix(MARGIN));
+    let limits =
+        limits.filter(|name| ColumnId::from_name(name).is_some_and(|id| id != ColumnId::Verdict));
+    // The columns in their order, each with whether it is shown however long the line is. Where strategies are compared,
+    // both measures of the impact are, although the speed is noisy; elsewhere the speed has no place.
+    let mut names: Vec<(&str, bool)> = vec![
+        (RUNS, true),
+        (DEPLOYED, true),
+        (ColumnId::Status.name(), true),
+        (ColumnId::Verdict.name(), false),
+        (DerivedColumn::Safe.name(), true),
+        (DerivedColumn::SmallestMargin.name(), true),
+        (DerivedColumn::SmallestMarginOf.name(), false),
+        (DerivedColumn::VerdictDependsOn.name(), true),
+    ];
+    if of_points {
+        let of_run = [ColumnId::Status.name(), ColumnId::Verdict.name()];
+        names.retain(|(name, _)| !of_run.contains(name));
+    }
+    names.extend(limits.map(|name| (name, true)));
+    let measures = MAIN_MEASURES.iter().filter(|id| has_strategies || **id != ColumnId::PeakVz);
+    names.extend(measures.map(|id| (id.name(), has_strategies && loads.contains(id))));
+    let mut shown: Vec<(&Column, bool)> = Vec::new();
+    for (name, always) in names {
+        let new = columns.iter().chain(shown.iter().map(|(column, _)| column));
+        if let Some(column) = table.column(name).filter(|_| new.clone().all(|c| c.name != name))
+            && column.cells.iter().any(|cell| *cell != crate::input::value::Value::Null)
+        {
+            shown.push((column, always));
+        }
+    }
+    // What the limits say, ranges and proportions take more room.
+    let judged = of_points || table.column(DerivedColumn::Safe.name()).is_some();
+    let most = if judged { MAX_WIDE_LINE_WIDTH } else { MAX_LINE_WIDTH };
+    let always = shown.iter().filter(|(_, always)| *always).map(|(column, _)| column);
+    let mut used: usize = columns.iter().chain(always).map(|column| width(table, column) + 2).sum();
+    shown.retain(|(column, always)| {
+        let width = if *always { 0 } else { width(table, column) };
+        let fits = *always || used + width <= most;
+        used += if fits && !always { width + 2 } else { 0 };
+        fits
     });
-    widest.max().unwrap_or(0).max(heading(column).width())
-}
-
-/// A cell as printed: a table has short job ids, and values with their mesh error.
-pub fn shown(table: &Table, column: &Column, row: usize, format: Format) -> Value {
-    match &column.cells[row] {
-        value if format != Format::Table => value.clone(),
-        Value::Text(id) if column.name == "job" => Value::Text(id.chars().take(8).collect()),
-        Value::Number(value) => match mesh_error(table, &column.name, row) {
-            Some(error) => Value::Text(range::with_error(*value, error, &column.shown)),
-            None => Value::Number(*value),
-        },
-        value => value.clone(),
-    }
-}
-
-/// The mesh error of a measure at a row.
-pub fn mesh_error(table: &Table, measure: &str, row: usize) -> Option<f64> {
-    match table.column(error_column(measure)?)?.cells[row] {
-        Value::Number(error) => Some(error),
-        _ => None,
-    }
+    columns.into_iter().chain(shown.into_iter().map(|(column, _)| column)).collect()
 }

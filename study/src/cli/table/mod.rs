@@ -3,21 +3,21 @@
 use std::io::Write;
 
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
-use super::points::{Points, chosen_runs};
-use super::print::{Heading, print_quantities};
+use super::points::{PointTable, chosen_runs};
+use super::print::print_table;
 use super::results::{self, Opened, StudyArgs};
-use super::{Format, best, legend, notes};
+use super::{Format, legend, notes};
+use crate::accuracy::error_column;
 use crate::input::keys::numerical::SEED;
 use crate::input::value::Value;
 use crate::job::row::{ColumnId, SAME_JOB_AS};
 use crate::platform::error::Result;
-use crate::store::table::Table;
+use crate::store::table::{Column, Table};
 use crate::study::Study;
-use columns::{chosen, heading, shown};
 use sort::{by_search, sorted};
 
+mod borders;
 mod columns;
-mod point_columns;
 mod sort;
 
 /// Most characters in a line of the default table.
@@ -53,6 +53,9 @@ pub struct Args {
     /// and proportions of its runs].
     #[arg(long)]
     pub runs: bool,
+    /// One row per search of the study, with the border that it found.
+    #[arg(long, conflicts_with_all = ["columns", "sort", "limit", "runs"])]
+    borders: bool,
     #[command(flatten)]
     units: UnitsOption,
     #[command(flatten)]
@@ -63,160 +66,129 @@ pub struct Args {
     quiet: QuietOption,
 }
 
-/// What is printed: columns, rows, and the notes about them.
-struct Listing {
-    headings: Vec<Heading>,
-    cells: Vec<Vec<Value>>,
-    noisy: Option<String>,
-    notes: Vec<String>,
-    /// Number of columns that `--columns all` shows.
-    all_columns: usize,
-}
-
 /// Runs `billow table`.
 ///
 /// # Errors
 /// Results that cannot be read; an unknown column; an invalid condition.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let asked = asked(args);
+    if args.borders {
+        return borders::run(args, out);
+    }
     let mut opened = results::open(&args.study, &args.set.set, &args.units)?;
-    let all_columns = opened.table.columns.len();
-    opened.add_keys(&asked, args.condition.as_deref());
+    let stored_columns = opened.table.columns.len();
+    opened.add_keys(&asked(args), args.condition.as_deref());
     let Opened { stored, table } = opened;
-    print(args, Some(&stored.study), &table, all_columns, out)
-}
-
-/// The columns that the options name.
-fn asked(args: &Args) -> Vec<String> {
-    let sorts = args.sort.iter().map(|key| key.split(':').next().unwrap_or_default());
-    let names = args.columns.iter().map(String::as_str).chain(sorts);
-    names.map(|name| name.trim().to_owned()).collect()
-}
-
-/// Prints a table, of whose results `all_columns` is the number of columns.
-fn print(
-    args: &Args,
-    study: Option<&Study>,
-    table: &Table,
-    all_columns: usize,
-    out: &mut dyn Write,
-) -> Result<()> {
+    let study = Some(&stored.study);
+    let format = args.output.format();
     let replicates = match study {
         Some(study) if !args.runs => study.replicates(),
         _ => Vec::new(),
     };
-    let rows = chosen_runs(table, args.condition.as_deref(), &replicates)?;
-    let rows = by_search(table, rows, study);
-    let format = args.output.format();
-    let meshes = study.map(Study::meshes).unwrap_or_default();
-    let mut listing = if replicates.is_empty() {
-        runs(args, table, &rows, all_columns, notes::seed_matters(study))?
-    } else {
-        points(args, table, &rows, &replicates, &meshes)?
+    let rows =
+        by_search(&table, chosen_runs(&table, args.condition.as_deref(), &replicates)?, study);
+    let points = (!replicates.is_empty()).then(|| PointTable::of(&table, &rows, &replicates));
+    let listed = match &points {
+        Some(points) if format == Format::Table => &points.for_reader(),
+        Some(points) => &points.table,
+        None => &table,
     };
-    let all_rows = listing.cells.len();
-    listing.cells.truncate(args.limit.unwrap_or(all_rows));
-    print_quantities(&listing.headings, &listing.cells, format, out)?;
-    let left_out = all_rows - listing.cells.len();
-    if left_out > 0 && !args.quiet.quiet {
-        eprintln!("{} of {all_rows} rows: --limit leaves out {left_out}", listing.cells.len());
+    // The order is that of the numbers, which a table for a reader does not have.
+    let order = match &points {
+        Some(points) => {
+            for name in sorting(&args.sort) {
+                columns::find(&points.table, &table, "--sort", name)?;
+            }
+            sorted(&points.table, (0..points.table.rows()).collect(), &args.sort)?
+        }
+        None => sorted(&table, rows.clone(), &args.sort)?,
+    };
+    let columns = columns::chosen(listed, &table, args, format)?;
+    let printed = &order[..args.limit.unwrap_or(order.len()).min(order.len())];
+    print_table(listed, &columns, printed, format, out)?;
+    if args.quiet.quiet {
+        return Ok(());
     }
-    if format == Format::Table && !args.quiet.quiet {
-        if let Some(note) = &listing.noisy {
+    let left_out = order.len() - printed.len();
+    if left_out > 0 {
+        let all = order.len();
+        eprintln!("{} of {all} rows: --limit leaves out {left_out}", printed.len());
+    }
+    if format == Format::Table {
+        let all = match &points {
+            Some(_) => columns::all(listed).len(),
+            None => stored_columns,
+        };
+        for note in notes(args, study, (&table, &rows), points.as_ref(), &columns) {
             eprintln!("{note}");
         }
-        if rows.is_empty() && args.condition.is_some() {
-            eprintln!(
-                "billow: no row fulfils --where; a number without a unit is SI, a unit is written as in \
-                 mass_flow_rate == '5 g/s'"
-            );
-        }
-        eprintln!("{} of {} columns (--columns all)", listing.headings.len(), listing.all_columns);
-        for note in &listing.notes {
-            eprintln!("{note}");
-        }
-        let shown = listing.cells.iter().flatten().any(legend::has_mesh_error);
-        let meshes = if args.runs { Vec::new() } else { meshes };
-        for note in legend::mesh_errors(shown, table, &meshes) {
-            eprintln!("{note}");
-        }
-        best::print(study, table, &rows);
+        eprintln!("{} of {all} columns (--columns all)", columns.len());
     }
     Ok(())
 }
 
-/// One row per run.
-fn runs(
-    args: &Args,
-    table: &Table,
-    rows: &[usize],
-    all_columns: usize,
-    seed_matters: bool,
-) -> Result<Listing> {
-    let format = args.output.format();
-    let rows = sorted(table, rows.to_vec(), &args.sort)?;
-    let columns = chosen(table, &args.columns, &args.sort, format)?;
-    let row =
-        |row: &usize| columns.iter().map(|column| shown(table, column, *row, format)).collect();
-    let mut notes = Vec::new();
-    let jobs = table.one_row_per_job(&rows).len();
-    if jobs < rows.len() {
-        notes.push(format!(
-            "note: {} of these {} rows are the same job as another row ({SAME_JOB_AS})",
-            rows.len() - jobs,
-            rows.len()
-        ));
-    }
-    Ok(Listing {
-        headings: columns.iter().map(|column| heading(column)).collect(),
-        cells: rows.iter().map(row).collect(),
-        noisy: noisy_note(columns.iter().map(|column| column.name.as_str()))
-            .filter(|_| seed_matters),
-        notes,
-        all_columns,
-    })
+/// The columns that the options name.
+fn asked(args: &Args) -> Vec<String> {
+    let names = args.columns.iter().map(String::as_str).chain(sorting(&args.sort));
+    names.map(|name| name.trim().to_owned()).collect()
 }
 
-/// One row per point.
-fn points(
+/// The columns by which rows are sorted.
+fn sorting(sort: &[String]) -> impl Iterator<Item = &str> {
+    sort.iter().map(|key| key.split(':').next().unwrap_or_default().trim())
+}
+
+/// What a reader must know of the rows and columns printed.
+fn notes(
     args: &Args,
-    table: &Table,
-    rows: &[usize],
-    replicates: &[String],
-    meshes: &[u32],
-) -> Result<Listing> {
-    let format = args.output.format();
-    let points = Points::of(table, rows, replicates);
-    for key in &args.sort {
-        let name = key.split(':').next().unwrap_or_default();
-        point_columns::find_point(&points, table, "--sort", name.trim())?;
+    study: Option<&Study>,
+    (table, rows): (&Table, &[usize]),
+    points: Option<&PointTable<'_>>,
+    columns: &[&Column],
+) -> Vec<String> {
+    let mut notes = Vec::new();
+    let meshes = study.map(Study::meshes).unwrap_or_default();
+    let replicates = study.map(Study::replicates).unwrap_or_default();
+    let over_seeds = points.is_some() && replicates.iter().any(|name| name == SEED);
+    if !over_seeds && notes::seed_matters(study) {
+        notes.extend(noisy_note(columns));
     }
-    let order = sorted(&points.table, (0..points.table.rows()).collect(), &args.sort)?;
-    let columns = point_columns::chosen(&points, table, &args.columns, &args.sort, format)?;
-    let row = |row: &usize| columns.iter().map(|column| column.cells[*row].clone()).collect();
-    let text = legend::points(order.len(), points.run_count(), replicates, meshes, OF_POINTS);
-    let mut notes = vec![format!("{text}; --runs shows the runs")];
-    if points.run_count() < rows.len() {
-        let same = rows.len() - points.run_count();
-        notes.push(format!("note: {same} of {} runs are the same job as another run", rows.len()));
+    if rows.is_empty() && args.condition.is_some() {
+        notes.push(
+            "billow: no row fulfils --where; a number without a unit is SI, a unit is written as in mass_flow_rate == \
+             '5 g/s'"
+                .to_owned(),
+        );
     }
-    Ok(Listing {
-        headings: columns.iter().map(|column| column.heading.clone()).collect(),
-        cells: order.iter().map(row).collect(),
-        noisy: if replicates.iter().any(|name| name == SEED) {
-            None
-        } else {
-            noisy_note(columns.iter().map(|column| column.heading.name.as_str()))
-        },
-        notes,
-        all_columns: point_columns::all(&points.table, format).len(),
-    })
+    let (all, jobs) = match points {
+        Some(points) => {
+            let count = points.table.rows();
+            let text = legend::points(count, points.run_count(), &replicates, &meshes, OF_POINTS);
+            notes.push(format!("{text}; --runs shows the runs"));
+            ("runs", points.run_count())
+        }
+        None => ("rows", table.one_row_per_job(rows).len()),
+    };
+    if jobs < rows.len() {
+        let same = rows.len() - jobs;
+        let of = rows.len();
+        notes.push(format!(
+            "note: {same} of these {of} {all} are the same job as another ({SAME_JOB_AS})"
+        ));
+    }
+    let has_error = |column: &&Column| {
+        let errors = error_column(&column.name).and_then(|name| table.column(name));
+        errors.is_some_and(|errors| rows.iter().any(|row| errors.cells[*row] != Value::Null))
+    };
+    let meshes = if args.runs { Vec::new() } else { meshes };
+    notes.extend(legend::mesh_errors(columns.iter().any(has_error), table, &meshes));
+    notes
 }
 
 /// A note when noisy measures are among the printed columns.
-fn noisy_note<'a>(columns: impl Iterator<Item = &'a str>) -> Option<String> {
+fn noisy_note(columns: &[&Column]) -> Option<String> {
+    let names = columns.iter().map(|column| column.name.as_str());
     let noisy: Vec<&str> =
-        columns.filter(|name| ColumnId::from_name(name).is_some_and(ColumnId::is_noisy)).collect();
+        names.filter(|name| ColumnId::from_name(name).is_some_and(ColumnId::is_noisy)).collect();
     let measures = noisy.join(", ");
     (!noisy.is_empty()).then(|| {
         format!("note: noisy: {measures}; the seed alone changes them by more than 3 %, use several seeds")

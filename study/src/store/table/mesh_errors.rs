@@ -1,7 +1,7 @@
 //! Columns of the mesh error: how far each promised measure of a row is from its value on fine meshes.
 //!
 //! Rows of the model film have them. The error of a model without mesh is of another kind: it would make most
-//! comparisons of its rows ties, though its errors are alike from design to design. `billow advise` names it.
+//! comparisons of its rows ties, though its errors are alike from design to design. `billow plan --accuracy` names it.
 
 use std::borrow::Cow;
 
@@ -74,7 +74,7 @@ impl RowErrors {
 /// Why rows of a model without mesh have no error, though the table knows it.
 fn of_another_model(method: &Method) -> String {
     format!(
-        "the error columns are those of film; billow advise STUDY gives the errors of {}",
+        "the error columns are those of film, not of {}; billow plan STUDY --accuracy names a method that keeps an error",
         method.name()
     )
 }
@@ -135,7 +135,7 @@ mod tests {
         assert_eq!(film.reason, None);
         let said = |model: &str| {
             format!(
-                "the error columns are those of film; billow advise STUDY gives the errors of {model}"
+                "the error columns are those of film, not of {model}; billow plan STUDY --accuracy names a method that keeps an error"
             )
         };
         let piston = of_row(ModelKind::Piston, Stepping::Adaptive(1e-9));

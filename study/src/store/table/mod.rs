@@ -72,6 +72,24 @@ impl Column {
     pub fn plain(name: &str, cell_type: CellType, cells: Vec<Value>) -> Self {
         Self::new(name, (cell_type, ""), "", cells)
     }
+
+    /// A column of other cells with the type, unit and meaning of this one.
+    #[must_use]
+    pub fn like(&self, name: impl Into<String>, cells: Vec<Value>) -> Self {
+        Self {
+            name: name.into(),
+            cell_type: self.cell_type,
+            unit: self.unit.clone(),
+            shown: self.shown.clone(),
+            meaning: self.meaning.clone(),
+            cells,
+        }
+    }
+
+    /// Whether every cell is empty or zero.
+    pub fn is_empty(&self) -> bool {
+        self.cells.iter().all(|cell| matches!(cell, Value::Null | Value::Integer(0)))
+    }
 }
 
 impl Table {

@@ -2,23 +2,12 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::analysis::answer::{
-    Found, Loads, MeasureVersus, PointMargin, SafeCounts, Safety, Searches, Versus,
-};
+use crate::analysis::answer::{Found, PointMargin, SafeCounts, Safety, Searches};
 use crate::input::value::json_value;
 use crate::study::SearchResult;
 
 /// The safe points.
 pub fn safety(safety: &Safety) -> Value {
-    let by = safety.by.as_ref().map(|by| {
-        let values = by.values.iter().map(|value| {
-            let mut keys = counts(&value.counts);
-            keys.insert("value".to_owned(), json_value(&value.value));
-            keys.insert("safest".to_owned(), json!(value.safest.as_ref().map(margin)));
-            keys
-        });
-        json!({ "parameter": by.parameter, "values": values.collect::<Vec<_>>() })
-    });
     let mut keys = counts(&safety.counts);
     keys.insert("limits".to_owned(), json!(safety.limits));
     let missed = safety.missed.iter();
@@ -26,7 +15,6 @@ pub fn safety(safety: &Safety) -> Value {
         missed.map(|(measure, points)| (measure.clone(), json!(points))).collect();
     keys.insert("missed".to_owned(), missed.into());
     keys.insert("nearest".to_owned(), json!(safety.nearest.as_ref().map(margin)));
-    keys.insert("by".to_owned(), json!(by));
     keys.into()
 }
 
@@ -49,39 +37,6 @@ fn margin(margin: &PointMargin) -> Value {
         "smallest_margin_of": margin.measure,
         "job": margin.point.job,
         "parameters": parameters,
-    })
-}
-
-/// Two values of a choice.
-pub fn versus(versus: &Versus) -> Value {
-    json!({
-        "value": json_value(&versus.value),
-        "than": json_value(&versus.than),
-        "loads": match versus.loads {
-            Loads::Gentler => "gentler",
-            Loads::MostlyGentler => "mostly_gentler",
-            Loads::Equal => "equal",
-            Loads::Mixed => "mixed",
-            Loads::Unknown => "unknown",
-        },
-        "pairs": versus.pairs,
-        "only_value_deploys": versus.only_value,
-        "only_than_deploys": versus.only_than,
-        "measures": versus.measures.iter().map(measure).collect::<Vec<_>>(),
-    })
-}
-
-fn measure(measure: &MeasureVersus) -> Value {
-    json!({
-        "measure": measure.measure.name(),
-        "pairs": measure.pairs,
-        "lower": measure.lower,
-        "higher": measure.higher,
-        "ties": measure.ties,
-        "only_value": measure.only_value,
-        "only_than": measure.only_than,
-        "median_ratio": measure.ratio,
-        "tolerance": measure.tolerance.limit,
     })
 }
 
