@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs studies/stability.json (a quarter of an hour on two cores; finished cells are not run again) and writes the maps, borders
-# and pictures of where methods fail to RESULTS/published: maps.txt, cells.csv, overview.png and one SVG a map.
+# and pictures of where methods fail to RESULTS/published: maps.txt, cells.csv and one SVG a map.
 #
 # usage: studies/publish_stability.sh [CHECKS [RESULTS]]
 set -euo pipefail
@@ -20,7 +20,6 @@ sed "\\|$results/charts/|d" "$results/maps.txt" > "$out/maps.txt"
 "$checks" stability studies/stability.json --results "$results" --format csv --no-pictures -q > "$out/cells.csv" 2> /dev/null || true
 
 rm -f "$out"/*.svg "$out"/*.png
-# SVG has a tenth of the size of PNG.
-cp "$results"/charts/*.svg "$results"/charts/overview.png "$out"
+cp "$results"/charts/*.svg "$out"
 echo "written to $out: $(find "$out" -type f | wc -l) files, $(du -sk "$out" | cut -f 1) KiB; exit code of the maps: $code"
 exit "$code"

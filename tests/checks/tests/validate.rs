@@ -1,5 +1,6 @@
 //! `billow-checks validate`: rows, names, tiers, exit codes.
 
+use std::collections::BTreeSet;
 use std::process::Output;
 
 use billow_checks::cases::{CASES, Rig, Tier, command};
@@ -85,21 +86,9 @@ fn an_unknown_case_is_bad_input() {
     assert!(error.contains("--case = shear_pannel: unknown name"), "{error}");
     assert!(error.contains("did you mean shear_panel?"), "{error}");
     assert!(CASES.iter().all(|case| error.contains(case.name)), "{error}");
-    assert_eq!(validate(&["--threads", "0"]).status.code(), Some(2));
-}
-
-#[test]
-fn list_runs_nothing() {
-    let output = validate(&["--list", "--json"]);
-    let rows = rows(&output);
-    assert_eq!(rows.len(), CASES.len());
-    let names: std::collections::BTreeSet<&str> = CASES.iter().map(|case| case.name).collect();
+    let names: BTreeSet<&str> = CASES.iter().map(|case| case.name).collect();
     assert_eq!(names.len(), CASES.len());
-    for (row, case) in rows.iter().zip(CASES) {
-        assert_eq!(row["case"], case.name);
-        assert!(row["tier"] == "quick" || row["tier"] == "long");
-        assert!(!row["compares"].as_str().expect("a text").is_empty());
-    }
+    assert_eq!(validate(&["--threads", "0"]).status.code(), Some(2));
 }
 
 #[test]

@@ -21,9 +21,6 @@ pub struct Args {
     /// Skip the long cases.
     #[arg(long)]
     quick: bool,
-    /// List the cases and what each compares; run nothing.
-    #[arg(long)]
-    list: bool,
     #[command(flatten)]
     threads: ThreadsOption,
     #[command(flatten)]
@@ -33,9 +30,6 @@ pub struct Args {
 /// Runs `billow-checks validate`.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let chosen = chosen("--case", &args.cases, CASES, |case| case.name)?;
-    if args.list {
-        return list(&chosen, args.options.format(), out);
-    }
     let skip = |case: &&Case| args.quick && case.tier == Tier::Long;
     let (skipped, cases): (Vec<&Case>, Vec<&Case>) = chosen.into_iter().partition(skip);
     let rig = Rig::selected()?;
@@ -69,15 +63,6 @@ pub fn verdict(judged: &[Judged]) -> Result<()> {
     let (number, all) = (outside.len(), judged.len());
     let names = outside.join(", ");
     Err(Error::JobsFailed(format!("{number} of {all} cases out of tolerance: {names}")))
-}
-
-fn list(cases: &[&Case], format: Format, out: &mut dyn Write) -> Result<()> {
-    let row = |case: &&Case| -> Vec<Value> {
-        let tier = if case.tier == Tier::Quick { "quick" } else { "long" };
-        vec![case.name.into(), tier.into(), case.compares.into()]
-    };
-    let rows: Vec<Vec<Value>> = cases.iter().map(row).collect();
-    print_rows(&["case", "tier", "compares"], &rows, format, out)
 }
 
 /// Prints one row per quantity of the cases. `seconds` is the time of the whole case.

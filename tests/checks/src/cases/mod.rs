@@ -22,7 +22,6 @@ pub mod prelude;
 pub(crate) mod reference;
 pub mod rig;
 mod row;
-mod table;
 
 pub mod contact_capsule;
 mod contact_impacts;
@@ -50,7 +49,6 @@ mod storeys_model;
 
 pub use rig::Rig;
 pub use row::Row;
-pub use table::CASES;
 
 /// Whether a case is part of `--quick`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,13 +70,76 @@ pub type Outcome = Result<Vec<Row>>;
 pub struct Case {
     /// Its name.
     pub name: &'static str,
-    /// What it compares.
-    pub compares: &'static str,
     /// Whether `--quick` skips it.
     pub tier: Tier,
     /// The function that runs it.
     pub body: fn(&Rig) -> Outcome,
 }
+
+const fn quick(name: &'static str, body: fn(&Rig) -> Outcome) -> Case {
+    Case { name, tier: Tier::Quick, body }
+}
+
+const fn long(name: &'static str, body: fn(&Rig) -> Outcome) -> Case {
+    Case { name, tier: Tier::Long, body }
+}
+
+/// Every case, in the order of the output.
+pub const CASES: &[Case] = &[
+    quick("tank_filling", gas::tank_filling),
+    quick("blow_down", gas::blow_down),
+    quick("cooling", gas::cooling),
+    quick("gas_spring", gas::gas_spring),
+    quick("injected_piston", gas::injected_piston),
+    quick("injected_piston_dead_volume", gas::injected_piston_dead_volume),
+    quick("storeys_model_capsule", storeys_model::capsule),
+    quick("storeys_model_similarity", storeys_model::similarity),
+    quick("stretched_disc", drum::stretched_disc),
+    quick("spinning_disc", drum::spinning_disc),
+    quick("breathing_sphere", |rig| sphere_motion::breathing_sphere(rig, [2, 3, 4])),
+    long("breathing_sphere_fine", |rig| sphere_motion::breathing_sphere(rig, [3, 4, 5])),
+    quick("integrators_piston", integrators::piston),
+    quick("integrators_sphere", integrators::sphere),
+    quick("integrators_disc", integrators::disc),
+    long("released_sphere", sphere_motion::released_sphere),
+    quick("strip_damping", damping::strip_decrement),
+    quick("strip_loss", damping::strip_loss),
+    quick("free_flight_damping", damping::free_flight),
+    quick("moving_fold", |rig| moving_fold::moving_fold(rig, 20, "coherent_share")),
+    long("moving_fold_fine", |rig| moving_fold::moving_fold(rig, 40, "coherent_share_fine")),
+    quick("rigid_rotation", invariants::rigid_rotation),
+    quick("momentum", invariants::momenta),
+    quick("shear_panel", invariants::shear_panel),
+    quick("sphere_ledger", energy_balance::sphere_ledger),
+    quick("static_sphere", static_shells::sphere),
+    quick("static_cylinder", static_shells::cylinder),
+    quick("cone", static_shells::cone),
+    quick("clamped_disc", static_discs::clamped_disc),
+    quick("mylar_balloon", static_discs::mylar_balloon),
+    quick("compliant_disc", static_discs::compliant_disc),
+    quick("compliant_frustum", static_shells::compliant_frustum),
+    quick("compliant_capsule", static_end_state::compliant_capsule),
+    quick("square_airbag", static_airbag::square_airbag),
+    quick("beam", static_wrinkling::beam),
+    quick("annulus_torsion", static_wrinkling::annulus_torsion),
+    long("end_state", static_end_state::aligned),
+    long("end_state_pattern", static_end_state::pattern),
+    quick("end_state_polygon", contact_relaxed::end_state_polygon),
+    quick("stack", contact_stack::stack_of_sheets),
+    quick("tube_between_plates", contact_tube::tube_between_plates),
+    quick("films_at_50_m_s", contact_impacts::films_at_50_m_s),
+    quick("squeezed_bag", |rig| contact_impacts::squeezed_bag(rig, &[0.0])),
+    long("squeezed_bag_stiff", |rig| contact_impacts::squeezed_bag(rig, &[0.1, 1.0])),
+    quick("friction", friction_adhesion::friction),
+    quick("adhesion", friction_adhesion::adhesion),
+    quick("capsule_every_step", |rig| contact_capsule::every_step(rig, 2)),
+    long("capsule_every_step_fine", |rig| contact_capsule::every_step(rig, 4)),
+    quick("capsule_deployed", |rig| contact_capsule::deployed(rig, 5)),
+    long("capsule_deployed_fine", |rig| contact_capsule::deployed(rig, 8)),
+    long("contact_distance", contact_capsule::contact_distance),
+    long("deployed_equals_inflated", |rig| contact_relaxed::deployed_equals_inflated(rig, 5)),
+    long("deployed_equals_inflated_fine", |rig| contact_relaxed::deployed_equals_inflated(rig, 8)),
+];
 
 /// The result of a case.
 pub struct Judged {

@@ -3,10 +3,10 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use billow_study::accuracy::{MeshErrors, PROMISED};
+use billow_study::accuracy::PROMISED;
 use billow_study::cli::Format;
 use billow_study::cli::options::ResultsOption;
-use billow_study::cli::print::{fraction, print_rows};
+use billow_study::cli::print::print_rows;
 use billow_study::cli::results::{self, StudyArgs};
 use billow_study::input::value::Value;
 use billow_study::job::row::ColumnId;
@@ -15,7 +15,6 @@ use billow_study::platform::files::{Disk, disk_error, write_output};
 use billow_study::platform::output;
 
 use super::calibrate::calibrate;
-use super::check::{MeshCheck, check};
 use super::fit::{ORDERS, fit};
 use super::limit::levels;
 use super::runs::{SceneRuns, by_scene};
@@ -45,10 +44,6 @@ pub struct Args {
     /// Subdivisions of the finest mesh of that table.
     #[arg(long, value_name = "N", default_value_t = 24, requires = "table")]
     reference: u32,
-    /// Check instead whether runs on coarser meshes keep the errors of the table of mesh errors that billow contains.
-    /// The results need film on n 24 too.
-    #[arg(long, conflicts_with = "table")]
-    check: bool,
     #[command(flatten)]
     options: Options,
 }
@@ -68,9 +63,6 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         }
     }
     let scenes = by_scene(&all);
-    if args.check {
-        return print_checks(&scenes, &names, args, out);
-    }
     let rows: Vec<Vec<Value>> = scenes.iter().flat_map(rows).collect();
     if rows.is_empty() {
         let allowed =
@@ -93,46 +85,6 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         Some(path) => write_table(&scenes, names, args.reference, path),
         None => Ok(()),
     }
-}
-
-/// Prints one row per mesh and measure: how many runs keep the error of the table.
-fn print_checks(
-    scenes: &[SceneRuns],
-    names: &[String],
-    args: &Args,
-    out: &mut dyn Write,
-) -> Result<()> {
-    let table = MeshErrors::shipped();
-    let checks = check(scenes, table);
-    if checks.is_empty() {
-        let allowed = format!(
-            "results with film on n {} and on a coarser mesh, in scenes that the table covers",
-            table.reference
-        );
-        let problem = "has nothing to check the table of mesh errors with";
-        return Err(Error::invalid_option("study", &names.join(", "), problem, allowed, ""));
-    }
-    let format = args.options.format();
-    let row = |check: &MeshCheck| {
-        vec![
-            check.subdivisions.into(),
-            check.measure.into(),
-            check.kept.met.into(),
-            check.kept.of.into(),
-            fraction(check.error, format),
-            fraction(check.of_table, format),
-        ]
-    };
-    let columns = ["subdivisions", "measure", "kept", "of", "median_error", "median_of_table"];
-    print_rows(&columns, &checks.iter().map(row).collect::<Vec<_>>(), format, out)?;
-    if format == Format::Table {
-        args.options.note(&format!(
-            "kept: runs whose difference from n {} is within the error of the table; medians: of these differences, and of \
-             these errors, relative",
-            table.reference
-        ));
-    }
-    Ok(())
 }
 
 const COLUMNS: [&str; 10] = [

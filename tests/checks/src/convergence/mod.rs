@@ -1,7 +1,6 @@
 //! Convergence with the mesh: the limit of each measure, and the table of mesh errors.
 
 mod calibrate;
-mod check;
 pub mod command;
 mod fit;
 mod limit;

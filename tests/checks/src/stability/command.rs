@@ -111,11 +111,7 @@ fn report(args: &Args, maps: &[FinishedMap<'_>], folder: &Path, out: &mut dyn Wr
     if !args.no_pictures {
         let of_map =
             |finished: &FinishedMap<'_>| (finished.map.name.clone(), picture::of_map(finished));
-        let mut pictures: Vec<(String, String)> = maps.iter().map(of_map).collect();
-        if maps.len() > 1 {
-            pictures.push(("overview".to_owned(), picture::overview(maps)));
-        }
-        draw(folder, pictures, format == Format::Table, out)?;
+        draw(folder, maps.iter().map(of_map), format == Format::Table, out)?;
     }
     match wrong.as_slice() {
         [] => Ok(()),

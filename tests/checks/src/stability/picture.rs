@@ -1,4 +1,4 @@
-//! Pictures: the outcome of each cell of a map, and all maps beside each other.
+//! Pictures: the outcome of each cell of a map.
 //!
 //! Grounds are those of Okabe and Ito, which colour-blind readers can distinguish; signs distinguish statuses in black
 //! and white.
@@ -179,7 +179,10 @@ fn legends(cells: &[Placed]) -> Vec<Legend> {
         let sample = Cell { corner: true, ..Cell::default() };
         entries.push((Sample::Cell(sample), "a failure is expected".to_owned()));
     }
-    entries.extend(cells.iter().any(Placed::is_wrong).then(not_as_expected));
+    if cells.iter().any(Placed::is_wrong) {
+        let sample = Cell { framed: true, ..Cell::default() };
+        entries.push((Sample::Cell(sample), "not as expected".to_owned()));
+    }
     let audits: BTreeSet<&str> = cells.iter().map(|placed| placed.cell.audit.as_str()).collect();
     let audits = audits.into_iter().filter(|audit| !letter(audit).is_empty());
     let audits =
@@ -188,11 +191,6 @@ fn legends(cells: &[Placed]) -> Vec<Legend> {
         Legend { heading: "status".to_owned(), entries },
         Legend { heading: "audit that ended the run".to_owned(), entries: audits },
     ]
-}
-
-fn not_as_expected() -> (Sample, String) {
-    let sample = Cell { framed: true, ..Cell::default() };
-    (Sample::Cell(sample), "not as expected".to_owned())
 }
 
 fn notes(map: &Map, cells: &[Placed]) -> Vec<String> {
@@ -221,62 +219,6 @@ fn notes(map: &Map, cells: &[Placed]) -> Vec<String> {
     let as_expected = cells.iter().filter(|placed| !placed.is_wrong());
     notes.push(format!("{} of {} cells as expected", as_expected.count(), cells.len()));
     notes
-}
-
-/// How many cells of each map fail, by method, as SVG.
-pub(super) fn overview(maps: &[FinishedMap<'_>]) -> String {
-    let used = |method: &Method| maps.iter().any(|finished| finished.map.methods.contains(method));
-    let methods: Vec<Method> = Method::all().filter(used).collect();
-    // The first map is the highest row.
-    let rows = || maps.iter().rev();
-    let (mut cells, mut shown) = (Vec::new(), BTreeMap::new());
-    for finished in rows() {
-        for method in &methods {
-            let (status, cell) = summary(&finished.cells, *method);
-            shown.extend(status.map(|status| (order(status), status)));
-            cells.push(cell);
-        }
-    }
-    let sample = |status: &str| (Sample::Cell(look(status)), status.to_owned());
-    let mut entries: Vec<(Sample, String)> = shown.into_values().map(sample).collect();
-    entries.extend(cells.iter().any(|cell| cell.framed).then(not_as_expected));
-    let heading = "most frequent failure, or done".to_owned();
-    Maps {
-        sheet: Sheet {
-            title: "Where methods fail: all maps".to_owned(),
-            subtitle: vec!["Number of runs that fail, and of all, by map and method".to_owned()],
-            legends: vec![Legend { heading, entries }],
-            notes: vec!["hatched: no run of this method in the map".to_owned()],
-        },
-        x: ("method".to_owned(), methods.iter().map(|method| method.name().to_owned()).collect()),
-        y: ("map".to_owned(), rows().map(|finished| finished.map.name.clone()).collect()),
-        headings: Vec::new(),
-        scale: None,
-        panels: vec![Panel { title: String::new(), cells, beside: Vec::new() }],
-    }
-    .svg()
-}
-
-/// The most frequent status of the failures of a method in a map, or done, and a cell that counts them.
-fn summary(cells: &[Placed], method: Method) -> (Option<&str>, Cell) {
-    let of: Vec<&Placed> = cells.iter().filter(|placed| placed.method == method).collect();
-    let failed = of.iter().map(|placed| &placed.cell).filter(|cell| !cell.is_done());
-    let failed: Vec<&str> = failed.map(|cell| cell.status.as_str()).collect();
-    // Of equally frequent ones the first in the order of statuses.
-    let frequency = |status: &&str| {
-        let equal = failed.iter().filter(|other| *other == status).count();
-        (equal, std::cmp::Reverse(order(status)))
-    };
-    let frequent = failed.iter().copied().max_by_key(frequency);
-    let first = || of.first().map(|placed| placed.cell.status.as_str());
-    let Some(status) = frequent.or_else(first) else { return (None, Cell::letter("")) };
-    let cell = Cell {
-        below: format!("{} of {}", failed.len(), of.len()),
-        corner: of.iter().any(|placed| failure_expected(&placed.expected)),
-        framed: of.iter().any(|placed| placed.is_wrong()),
-        ..look(status)
-    };
-    (Some(status), cell)
 }
 
 #[cfg(test)]
