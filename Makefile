@@ -47,7 +47,7 @@ validate: build
 	$(CHECKS) validate
 
 stability: build
-	studies/publish_stability.sh $(CHECKS)
+	$(CHECKS) stability studies/stability.json --results results/stability/published > /dev/null
 
 test: deps
 	$(CARGO) test $(FLAGS)

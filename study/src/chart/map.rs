@@ -141,7 +141,7 @@ pub fn svg(source: &Source<'_>, measure: &str, axes: [&str; 2]) -> Result<String
                 }
             });
         }
-        panels.push(Panel { title: names::capital(title), cells: of_panel, ..Panel::default() });
+        panels.push(Panel { title: names::capital(title), cells: of_panel });
     }
     let legend = cells.legend(&panels);
     notes.splice(0..0, cells.notes());
@@ -158,7 +158,6 @@ pub fn svg(source: &Source<'_>, measure: &str, axes: [&str; 2]) -> Result<String
         x: x.along(&right, &source.rows),
         y: y.along(&up, &source.rows),
         scale,
-        headings: Vec::new(),
         panels,
     };
     Ok(maps.svg())

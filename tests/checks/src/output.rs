@@ -1,13 +1,8 @@
-//! What the checks share beside the printer of billow: options, entries chosen by name, pictures in a folder.
+//! What the checks share beside the printer of billow: options, and entries chosen by name.
 
-use std::io::Write;
-use std::path::Path;
-
+use billow_study::cli::Format;
 use billow_study::cli::options::{OutputOptions, QuietOption};
-use billow_study::cli::picture::{self, Picture};
-use billow_study::cli::{Format, output_error};
 use billow_study::platform::error::{Error, Result};
-use billow_study::platform::files::{Disk, Files, disk_error};
 use billow_study::platform::nearest::did_you_mean;
 use billow_study::platform::output;
 
@@ -51,25 +46,4 @@ pub fn chosen<'a, T>(
     }
     let named = |entry: &&T| names.is_empty() || names.iter().any(|name| name == name_of(entry));
     Ok(table.iter().filter(named).collect())
-}
-
-/// Writes pictures (name, SVG) as SVG and PNG to the folder `charts` of results. Lists their paths if asked.
-pub fn draw(
-    results: &Path,
-    pictures: impl IntoIterator<Item = (String, String)>,
-    list: bool,
-    out: &mut dyn Write,
-) -> Result<()> {
-    let folder = results.join("charts");
-    Disk.create_folder(&folder).map_err(|error| disk_error(&folder, &error))?;
-    for (name, svg) in pictures {
-        for format in Picture::ALL {
-            let path = folder.join(format!("{name}.{}", format.extension()));
-            picture::write(&path, &svg)?;
-            if list {
-                writeln!(out, "  {}", path.display()).map_err(output_error)?;
-            }
-        }
-    }
-    Ok(())
 }

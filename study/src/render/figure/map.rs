@@ -23,8 +23,6 @@ pub struct Maps {
     pub y: (String, Vec<String>),
     /// Quantity and unit of the colour scale, and its ends; `None` without a scale.
     pub scale: Option<(String, [f64; 2])>,
-    /// Headings of the texts at the right of every row; then the maps stand one below the other.
-    pub headings: Vec<String>,
     /// The maps, row by row.
     pub panels: Vec<Panel>,
 }
@@ -36,8 +34,6 @@ pub struct Panel {
     pub title: String,
     /// Cells along x, those of the lowest y first.
     pub cells: Vec<Cell>,
-    /// Texts at the right of each row, one for each heading; the lowest y first.
-    pub beside: Vec<Vec<String>>,
 }
 
 /// One cell.
@@ -53,8 +49,6 @@ pub struct Cell {
     pub below: String,
     /// Whether it has a thick frame.
     pub framed: bool,
-    /// Whether its upper right corner is filled.
-    pub corner: bool,
 }
 
 /// The ground of a cell.
@@ -91,8 +85,6 @@ const SIGN: f64 = 3.4;
 const LINE: f64 = 1.3 * SMALL;
 /// Height of a line of a title, mm.
 const TITLE_LINE: f64 = 1.35 * SMALL;
-/// Distance of the texts at the right from the map and from each other, mm.
-const BESIDE: f64 = 2.5;
 /// Width of the colour bar, mm.
 const BAR: f64 = 4.0;
 /// Least height of the colour bar, mm.
@@ -164,10 +156,6 @@ impl Cell {
             let inner = size.map(|length| length - 2.0 * inset);
             page.frame(corner.map(|end| end + inset), inner, &Stroke::solid(ink, 0.8));
         }
-        if self.corner {
-            let [x, y] = [corner[0] + size[0], corner[1]];
-            page.polygon(&[[x - 1.5, y], [x, y], [x, y + 1.5]], ink, &Stroke::solid(ink, 0.05));
-        }
         let letters = Letters { colour: ink, ..Letters::new(SMALL) };
         let up = if texts[1] && !self.below.is_empty() { 0.5 * LINE } else { 0.0 };
         let line = if texts[0] { self.line() } else { SIGN - 1.4 };
@@ -200,8 +188,6 @@ struct Layout {
     /// Titles of the maps, broken into lines, and the height above a map.
     titles: Vec<Vec<String>>,
     title: f64,
-    /// Distance of each column of texts from the right end of a map.
-    beside: Vec<f64>,
     /// Whether the cells have the space for their text, and for the text below.
     texts: [bool; 2],
 }
@@ -211,20 +197,13 @@ impl Layout {
         let (columns, rows) = (maps.x.1.len().max(1), maps.y.1.len().max(1));
         let gutter = widest(&maps.y.1).min(0.3 * INNER);
         let left = MARGIN + 1.8 * MEDIUM + gutter + 2.5;
-        let (mut beside, mut end) = (Vec::new(), 0.0);
-        for (number, heading) in maps.headings.iter().enumerate() {
-            let rows = maps.panels.iter().flat_map(|panel| &panel.beside);
-            beside.push(end + BESIDE);
-            end += BESIDE + widest(rows.filter_map(|row| row.get(number)).chain([heading]));
-        }
-        let inner = INNER + MARGIN - left - end - maps.bar_width();
+        let inner = INNER + MARGIN - left - maps.bar_width();
         let cells = || maps.panels.iter().flat_map(|panel| &panel.cells);
         let needed = cells().map(Cell::width).fold(0.0, f64::max);
         let names = widest(&maps.x.1) + 1.5;
         let width_of =
             |across: usize| (inner - (across - 1) as f64 * GAP) / (across * columns) as f64;
         let most = match maps.panels.len() {
-            _ if !maps.headings.is_empty() => 1,
             many if many > 9 => 4,
             few => super::columns(few),
         };
@@ -241,9 +220,9 @@ impl Layout {
         let map = [width * columns as f64, cell[1] * rows as f64];
         let title = |panel: &Panel| wrapped_at_commas(&panel.title, SMALL, map[0]);
         let titles: Vec<Vec<String>> = maps.panels.iter().map(title).collect();
-        let lines = titles.iter().map(Vec::len).max().unwrap_or(0).max(maps.headings.len().min(1));
+        let lines = titles.iter().map(Vec::len).max().unwrap_or(0);
         let title = 1.5 + TITLE_LINE * lines as f64;
-        Self { left, gutter, across, cell, map, titles, title, beside, texts }
+        Self { left, gutter, across, cell, map, titles, title, texts }
     }
 
     /// Width of a full row of maps.
@@ -319,14 +298,6 @@ impl Maps {
                 let letters = Letters::new(SMALL).at(Anchor::End);
                 page.text([corner[0] - 1.8, y + 0.36 * SMALL], &letters, &name);
             }
-            for (text, right) in panel.beside.get(row).into_iter().flatten().zip(&layout.beside) {
-                let position = [corner[0] + layout.map[0] + right, y + 0.36 * SMALL];
-                page.text(position, &Letters::new(SMALL), text);
-            }
-        }
-        for (heading, right) in self.headings.iter().zip(&layout.beside) {
-            let position = [corner[0] + layout.map[0] + right, corner[1] - 1.6];
-            page.text(position, &Letters::new(SMALL), heading);
         }
     }
 
@@ -396,7 +367,7 @@ mod tests {
     const VALUES: [f64; 5] = [12.0, 31.25, 0.5, 0.25, -1234.0];
 
     /// Maps with cells of all kinds.
-    fn maps(columns: usize, rows: usize, panels: usize, headings: usize) -> Maps {
+    fn maps(columns: usize, rows: usize, panels: usize, scale: bool) -> Maps {
         let cell = |index: usize| match index % 7 {
             3 => Cell::letter("S"),
             4 => Cell::default(),
@@ -405,18 +376,14 @@ mod tests {
                 sign: Some([Sign::Dot, Sign::Cross, Sign::Bar, Sign::Marker(3)][index % 4]),
                 text: ["S", "", "Tl"][index % 3].to_owned(),
                 below: ["3.4 µs", "", "2e−5"][index % 3].to_owned(),
-                corner: true,
                 ..Cell::default()
             },
             6 => Cell { below: "3/5".to_owned(), framed: true, ..Cell::letter("") },
             _ => Cell::of(VALUES[index % 5], Sign::Circle([Fill::Half, Fill::Crossed][index % 2])),
         };
-        let beside =
-            |row: usize| vec![format!("1.{row}"), "1.0000".to_owned()][..headings].to_vec();
         let panel = |panel: usize| Panel {
             title: format!("M {panel}, strategy rapid"),
             cells: (0..columns * rows).map(cell).collect(),
-            beside: (0..rows).map(beside).collect(),
         };
         Maps {
             sheet: Sheet { title: "A map".to_owned(), ..Sheet::default() },
@@ -425,8 +392,7 @@ mod tests {
                 (0..columns).map(|n| format!("{n}.5")).collect(),
             ),
             y: ("N".to_owned(), (0..rows).map(|n| n.to_string()).collect()),
-            scale: (headings == 0).then(|| ("peak_vz (m/s)".to_owned(), [-1234.0, 31.25])),
-            headings: ["border", "of 2/ω"][..headings].iter().map(|&s| s.to_owned()).collect(),
+            scale: scale.then(|| ("peak_vz (m/s)".to_owned(), [-1234.0, 31.25])),
             panels: (0..panels).map(panel).collect(),
         }
     }
@@ -435,25 +401,24 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(60))]
         #[test]
         fn any_map_is_a_valid_figure(
-            columns in 1..17_usize, rows in 1..9_usize, panels in 1..11_usize, headings in 0..3_usize,
+            columns in 1..17_usize, rows in 1..9_usize, panels in 1..11_usize, scale in any::<bool>(),
         ) {
-            check::figure(&maps(columns, rows, panels, headings).svg());
+            check::figure(&maps(columns, rows, panels, scale).svg());
         }
     }
 
     #[test]
     fn cells_have_their_texts_where_all_of_them_fit() {
-        let shown = |columns: usize, headings: usize, texts: &[&str]| {
-            let all = check::figure(&maps(columns, 2, 1, headings).svg());
+        let shown = |columns: usize, texts: &[&str]| {
+            let all = check::figure(&maps(columns, 2, 1, true).svg());
             texts.iter().all(|text| all.iter().any(|other| other == text))
         };
-        assert!(shown(6, 0, &["12.0", "0.500", "3/5", "Tl", "2e−5", "peak_vz (m/s)", "N", "S"]));
-        assert!(shown(6, 2, &["border", "1.1"]));
-        assert!(!shown(16, 0, &["12.0"]) && shown(16, 0, &["S"]));
+        assert!(shown(6, &["12.0", "0.500", "3/5", "Tl", "2e−5", "peak_vz (m/s)", "N", "S"]));
+        assert!(!shown(16, &["12.0"]) && shown(16, &["S"]));
         assert_eq!(VALUES.map(number), ["12.0", "31.2", "0.500", "0.250", "−1234"]);
-        assert!(png::encode(&maps(5, 1, 1, 0).svg(), 2.0).unwrap().len() > 1000);
+        assert!(png::encode(&maps(5, 1, 1, true).svg(), 2.0).unwrap().len() > 1000);
         // One value for all cells has a finite colour.
         let scale = Some(("x".to_owned(), [5.0, 5.0]));
-        check::figure(&Maps { scale, ..maps(3, 2, 1, 0) }.svg());
+        check::figure(&Maps { scale, ..maps(3, 2, 1, true) }.svg());
     }
 }

@@ -11,12 +11,13 @@ use std::path::PathBuf;
 
 use billow_study::analysis::work_precision::{Cost, Diagram, SceneRuns};
 use billow_study::chart::work_precision as pictures;
-use billow_study::cli::Format;
 use billow_study::cli::chart::work_precision::print_front;
+use billow_study::cli::picture::{self, Picture};
 use billow_study::platform::error::{Error, Result};
+use billow_study::platform::files::{Disk, Files, disk_error};
 
 use crate::cases::Rig;
-use crate::output::{Options, chosen, draw};
+use crate::output::{Options, chosen};
 
 mod airbag;
 mod meter;
@@ -58,14 +59,17 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             body(&rig).map_err(|problem| Error::JobsFailed(format!("scene {name}: {problem}")))?;
         diagrams.push(Diagram::of(runs));
     }
-    let format = args.options.format();
-    print_front(&diagrams, Cost::Work, format, out)?;
-    let mut drawn = Vec::new();
+    let folder = args.out.join("charts");
+    Disk.create_folder(&folder).map_err(|error| disk_error(&folder, &error))?;
     for (cost, ending) in [(Cost::Work, ""), (Cost::Seconds, "_seconds")] {
-        drawn.push((format!("pareto_exact{ending}"), pictures::overview(&diagrams, cost)));
-        drawn.extend(diagrams.iter().map(|diagram| {
-            (format!("pareto_{}{ending}", diagram.name), pictures::scene(diagram, cost))
-        }));
+        let scenes =
+            diagrams.iter().map(|diagram| (&*diagram.name, pictures::scene(diagram, cost)));
+        for (name, svg) in scenes.chain([("exact", pictures::overview(&diagrams, cost))]) {
+            for format in Picture::ALL {
+                let name = format!("pareto_{name}{ending}.{}", format.extension());
+                picture::write(&folder.join(name), &svg)?;
+            }
+        }
     }
-    draw(&args.out, drawn, format == Format::Table, out)
+    print_front(&diagrams, Cost::Work, args.options.format(), out)
 }

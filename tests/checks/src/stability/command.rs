@@ -3,22 +3,22 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use billow_study::cli::Format;
 use billow_study::cli::options::ThreadsOption;
 use billow_study::cli::print::{count, print_rows};
-use billow_study::cli::{Format, output_error};
-use billow_study::input::value::{Value, brief_number};
+use billow_study::input::value::Value;
+use billow_study::job::Status;
 use billow_study::platform::error::{Error, Result};
-use billow_study::platform::files::{Disk, Files, disk_error};
-use billow_study::platform::stop::Stop;
+use billow_study::platform::files::{Disk, Files, disk_error, write_output};
 
 use super::file::{self, Map};
-use super::map::{Border, Cells, FinishedMap, Placed};
+use super::map::{Border, FinishedMap, Placed};
 use super::picture;
 use crate::cases::Rig;
-use crate::output::{Options, chosen, draw};
+use crate::output::{Options, chosen};
 
-/// Columns of the table.
-const COLUMNS: [&str; 11] = [
+/// Columns of the file of cells.
+const CELLS: [&str; 11] = [
     "map",
     "method",
     "x",
@@ -31,11 +31,13 @@ const COLUMNS: [&str; 11] = [
     "ledger_residual",
     "steps",
 ];
+/// Columns of the borders.
+const BORDERS: [&str; 7] = ["map", "method", "at", "along", "border", "status", "of_theory"];
 
 /// Arguments of `billow-checks stability`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A map file, as studies/stability.json. Runs the cells that are missing in the results.
+    /// A map file, as studies/stability.json.
     #[arg(value_name = "MAPS")]
     maps_file: PathBuf,
     /// Folder of the results [default: `results/MAPS` under the current folder].
@@ -44,75 +46,50 @@ pub struct Args {
     /// Only these maps, comma-separated.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     maps: Vec<String>,
-    /// Draw no pictures.
-    #[arg(long)]
-    no_pictures: bool,
     #[command(flatten)]
     threads: ThreadsOption,
     #[command(flatten)]
     options: Options,
 }
 
-/// Runs `billow-checks stability`: prints the numbers of cells by method and status, the borders and what is not as
-/// expected; as csv or json every cell.
+/// Runs `billow-checks stability`: prints the borders, writes them and every cell as CSV and a picture of each map, and
+/// reports what is not as expected.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let all = file::read(&args.maps_file)?;
     let maps = chosen("--maps", &args.maps, &all, |map| &map.name)?;
     let usual = || Path::new("results").join(args.maps_file.file_stem().unwrap_or_default());
     let folder = args.results.clone().unwrap_or_else(usual);
     Disk.create_folder(&folder).map_err(|error| disk_error(&folder, &error))?;
-    let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
-    let rig = Rig::selected()?;
-    let (cells, damaged) = Cells::open(rig, folder.join("cells.json"), &stop);
-    if damaged {
-        let folder = folder.display();
-        args.options
-            .note(&format!("the stored cells of {folder} are of another version or damaged"));
-    }
-    let pool = args.threads.pool()?;
-    let mut finished = Vec::new();
+    let write = |name: &str, bytes: &[u8]| {
+        let path = folder.join(name);
+        write_output(&Disk, &path, bytes).map_err(|error| disk_error(&path, &error))
+    };
+    let (rig, pool) = (Rig::selected()?, args.threads.pool()?);
+    let (mut cells, mut borders, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
     for map in maps {
-        let before = cells.len();
-        finished.push(pool.install(|| cells.run(map))?);
-        args.options.note(&format!(
-            "map {}: {} run",
-            map.name,
-            count(cells.len() - before, "cell")
-        ));
+        let finished = pool.install(|| FinishedMap::run(&rig, map));
+        let done = finished.cells.iter().filter(|placed| placed.cell.status == Status::Done);
+        let (done, all) = (done.count(), count(finished.cells.len(), "cell"));
+        args.options.note(&format!("map {}: {all}, {done} done", map.name));
+        cells.extend(finished.cells.iter().map(|placed| cell_row(map, placed)));
+        borders.extend(finished.borders.iter().map(|border| border_row(map, border)));
+        let wrong_borders = finished.borders.iter().filter(|border| border.is_wrong);
+        wrong.extend(wrong_borders.map(|border| {
+            let ratio = border.of_theory.unwrap_or(f64::NAN);
+            format!("{}: {}: {ratio:.4} of the limit of theory", map.name, border.method.name())
+        }));
+        let wrong_cells = finished.cells.iter().filter(|placed| placed.is_wrong());
+        wrong.extend(wrong_cells.map(|placed| unexpected(map, placed)));
+        write(&format!("{}.svg", map.name), picture::of_map(&finished).as_bytes())?;
     }
-    report(args, &finished, &folder, out)
-}
-
-/// Prints cells and borders, draws the pictures, and reports what is not as expected.
-fn report(args: &Args, maps: &[FinishedMap<'_>], folder: &Path, out: &mut dyn Write) -> Result<()> {
-    let format = args.options.format();
-    let (mut rows, mut lines, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
-    for finished in maps {
-        let map = finished.map;
-        rows.extend(finished.cells.iter().map(|placed| row(map, placed)));
-        lines.extend(summary(finished));
-        for border in &finished.borders {
-            let text = border_text(map, border);
-            if border.is_wrong {
-                wrong.push(format!("{}: {text}: not the limit of theory", map.name));
-            }
-            lines.push(format!("  {text}"));
-        }
-        let unexpected_cells = finished.cells.iter().filter(|placed| placed.is_wrong());
-        wrong.extend(unexpected_cells.map(|placed| unexpected(map, placed)));
+    for (name, columns, rows) in
+        [("cells.csv", &CELLS[..], &cells), ("borders.csv", &BORDERS[..], &borders)]
+    {
+        let mut text = Vec::new();
+        print_rows(columns, rows, Format::Csv, &mut text)?;
+        write(name, &text)?;
     }
-    if format == Format::Table {
-        for line in &lines {
-            writeln!(out, "{line}").map_err(output_error)?;
-        }
-    } else {
-        print_rows(&COLUMNS, &rows, format, out)?;
-    }
-    if !args.no_pictures {
-        let of_map =
-            |finished: &FinishedMap<'_>| (finished.map.name.clone(), picture::of_map(finished));
-        draw(folder, maps.iter().map(of_map), format == Format::Table, out)?;
-    }
+    print_rows(&BORDERS, &borders, args.options.format(), out)?;
     match wrong.as_slice() {
         [] => Ok(()),
         all => Err(Error::JobsFailed(format!(
@@ -123,63 +100,46 @@ fn report(args: &Args, maps: &[FinishedMap<'_>], folder: &Path, out: &mut dyn Wr
     }
 }
 
-/// A border in words.
-fn border_text(map: &Map, border: &Border) -> String {
-    let axis = map.horizontal();
-    let (along, method) = (&map.axes[axis].0, border.method.name());
-    let at = border
-        .at
-        .map_or(String::new(), |at| format!(", {} {}", map.axes[1 - axis].0, brief_number(at)));
-    let Some(value) = border.value else {
-        return format!("border {method}{at}: none along {along}");
-    };
-    let theory =
-        border.of_theory.map_or(String::new(), |ratio| format!(", {ratio:.4} of 2/omega_max"));
-    format!("border {method}{at}: {along} {} ({}){theory}", brief_number(value), border.status)
+fn border_row(map: &Map, border: &Border) -> Vec<Value> {
+    let at = map.axes.get(1).zip(border.at).map(|((name, _), value)| format!("{name} {value}"));
+    vec![
+        map.name.as_str().into(),
+        border.method.name().into(),
+        at.into(),
+        map.axes[0].0.as_str().into(),
+        border.change.map(|(value, _)| value).into(),
+        border.change.map(|(_, status)| status.name()).into(),
+        border.of_theory.into(),
+    ]
+}
+
+/// The names of what is expected of a cell.
+fn expected(placed: &Placed) -> String {
+    let names: Vec<&str> = placed.expected.iter().map(|expected| expected.name()).collect();
+    names.join(" or ")
 }
 
 fn unexpected(map: &Map, placed: &Placed) -> String {
-    let (method, expected) = (placed.method.name(), placed.expected.join(" or "));
-    let (status, place) = (&placed.cell.status, &placed.cell.place);
+    let (method, status, place) =
+        (placed.method.name(), placed.cell.status.name(), &placed.cell.place);
     let place = if place.is_empty() { String::new() } else { format!(" ({place})") };
     let at = map.at(&placed.at).join(", ");
-    format!("{}: {method}, {at}: {status}{place}, expected {expected}", map.name)
+    format!("{}: {method}, {at}: {status}{place}, expected {}", map.name, expected(placed))
 }
 
-/// The numbers of cells by status, of each method.
-fn summary(finished: &FinishedMap<'_>) -> Vec<String> {
-    let map = finished.map;
-    let mut lines = vec![format!("{}: {}", map.name, count(finished.cells.len(), "cell"))];
-    for (method, cells) in map.methods.iter().zip(finished.cells.chunks(map.places().len())) {
-        let mut numbers: Vec<(&str, usize)> = Vec::new();
-        for placed in cells {
-            let status = placed.cell.status.as_str();
-            match numbers.iter_mut().find(|(known, _)| *known == status) {
-                Some((_, number)) => *number += 1,
-                None => numbers.push((status, 1)),
-            }
-        }
-        let texts: Vec<String> =
-            numbers.iter().map(|(status, number)| format!("{number} {status}")).collect();
-        lines.push(format!("  {}: {}", method.name(), texts.join(", ")));
-    }
-    lines
-}
-
-fn row(map: &Map, placed: &Placed) -> Vec<Value> {
+fn cell_row(map: &Map, placed: &Placed) -> Vec<Value> {
     let mut at = map.at(&placed.at).into_iter();
     let cell = &placed.cell;
-    let audit = (!cell.audit.is_empty()).then_some(cell.audit.as_str());
     vec![
         map.name.as_str().into(),
         placed.method.name().into(),
         at.next().into(),
         at.next().into(),
-        cell.status.as_str().into(),
-        placed.expected.join(" or ").into(),
+        cell.status.name().into(),
+        expected(placed).into(),
         if placed.is_wrong() { "no" } else { "yes" }.into(),
         cell.time.into(),
-        audit.into(),
+        Some(cell.audit).filter(|audit| !audit.is_empty()).into(),
         cell.residual.into(),
         cell.steps.into(),
     ]

@@ -3,13 +3,14 @@
 //! ```json
 //! {"maps": [{"name": "step", "description": "what is asked", "scene": "sheet",
 //!            "axes": [["step", [0.5, 1.5]], ["damping", [0, 0.1]]], "values": {"sliver": 1}, "methods": ["explicit"],
-//!            "border": {"along": "step", "within": 1e-3}, "theory": 0.01,
-//!            "expect": [{"methods": ["explicit"], "where": {"step": [1.1, 2]}, "status": "unstable", "why": "…"}]}]}
+//!            "border": 1e-3, "theory": 0.01,
+//!            "expect": [{"methods": ["explicit"], "where": {"step": [1.1, 2]}, "status": ["unstable"], "why": "…"}]}]}
 //! ```
 //!
-//! Without `methods`, a map or a rule holds for every method that can run the scene; `film` is every integrator. The
-//! first rule that holds for a cell decides; without one the run is expected to be `done`. `theory` is the largest
-//! relative difference of the border of `explicit` from 2/ω.
+//! Without `methods`, a map or a rule holds for every method that can run the scene; `film` is every integrator. `where`
+//! has the smallest and the largest value of parameters. The first rule that holds for a cell decides; without one the
+//! run is expected to be `done`. `border` is the relative width at which the search along the first axis ends, `theory`
+//! the largest relative difference of the border of `explicit` from 2/ω.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -20,82 +21,56 @@ use billow_study::platform::error::{Error, InputError, Result};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 
-use super::cell::{Cell, Question};
 use super::scenes::{Parameter, SCENES, StabilityScene, Values};
 use super::{Method, names};
 
-/// Expectation of any failure.
-const FAILS: &str = "fails";
-/// Expectation that any outcome meets.
-const ANY: &str = "any";
-/// Every integrator of film, as a method.
-const FILM: &str = "film";
 /// Most values of an axis. Chosen: a picture shows them.
 const MAX_VALUES: usize = 16;
 
-/// One value, or a list.
-#[derive(Clone, Deserialize)]
-#[serde(untagged)]
-enum OneOrMany<T> {
-    One(T),
-    Many(Vec<T>),
+/// What a cell may be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Expected {
+    Any,
+    /// Any failure.
+    Fails,
+    Is(Status),
 }
 
-impl<T> OneOrMany<T> {
-    fn list(&self) -> &[T] {
+impl Expected {
+    pub(super) fn name(self) -> &'static str {
         match self {
-            Self::One(one) => std::slice::from_ref(one),
-            Self::Many(list) => list,
+            Self::Any => "any",
+            Self::Fails => "fails",
+            Self::Is(status) => status.name(),
+        }
+    }
+
+    pub(super) fn is_met_by(self, status: Status) -> bool {
+        match self {
+            Self::Any => true,
+            Self::Fails => status.is_failure(),
+            Self::Is(expected) => status == expected,
         }
     }
 }
 
 /// What is expected of some cells.
-#[derive(Clone, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Rule {
     /// Empty: every method of the map.
     #[serde(default, deserialize_with = "methods")]
     methods: Vec<Method>,
-    /// Parameters, and their value or smallest and largest value.
     #[serde(default, rename = "where")]
-    place: BTreeMap<String, OneOrMany<f64>>,
-    /// Names of statuses, [`FAILS`] or [`ANY`].
-    status: OneOrMany<String>,
+    place: BTreeMap<String, [f64; 2]>,
+    #[serde(deserialize_with = "expected")]
+    status: Vec<Expected>,
     /// Why; may be empty.
     #[serde(default)]
     why: String,
 }
 
-impl Rule {
-    fn is_of(&self, method: Method) -> bool {
-        self.methods.is_empty() || self.methods.contains(&method)
-    }
-
-    fn holds(&self, question: &Question) -> bool {
-        let within = |(name, range): (&String, &OneOrMany<f64>)| match range.list() {
-            [from, .., to] => (*from..=*to).contains(&question.values.get(name)),
-            value => value.contains(&question.values.get(name)),
-        };
-        self.is_of(question.method) && self.place.iter().all(within)
-    }
-}
-
-/// Where the outcome changes is searched along an axis.
-#[derive(Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Search {
-    /// Name of the axis.
-    along: String,
-    /// Relative width at which a search ends.
-    #[serde(default = "border_width")]
-    pub(super) within: f64,
-}
-
-fn border_width() -> f64 {
-    0.02
-}
-#[derive(Clone, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Map {
     pub(super) name: String,
@@ -111,8 +86,8 @@ pub(super) struct Map {
     /// The values of other parameters that differ from their default.
     #[serde(default)]
     values: BTreeMap<String, f64>,
-    #[serde(rename = "border")]
-    pub(super) search: Option<Search>,
+    /// Relative width at which the search of a border along the first axis ends; `None` without a search.
+    pub(super) border: Option<f64>,
     /// Largest relative difference of the border of explicit steps from 2/ω; `None` where no theory is known.
     pub(super) theory: Option<f64>,
     #[serde(default)]
@@ -127,17 +102,8 @@ impl Map {
 
     /// The values of all parameters at a place.
     pub(super) fn values(&self, at: &[f64]) -> Values {
-        let mut values = Values::of(self.scene);
         let axes = self.axes.iter().map(|(name, _)| name).zip(at);
-        for (name, value) in self.values.iter().chain(axes) {
-            values.set(name, *value);
-        }
-        values
-    }
-
-    /// The question of a cell at these values of the axes.
-    pub(super) fn question(&self, method: Method, at: &[f64]) -> Question {
-        Question { scene: self.scene, method, values: self.values(at) }
+        Values::of(self.scene, self.values.iter().chain(axes))
     }
 
     /// Every place of the map: along the first axis, the lowest value of the second one first.
@@ -156,32 +122,28 @@ impl Map {
         self.axes.iter().zip(place).map(|((name, _), value)| format!("{name} {value}")).collect()
     }
 
-    /// What is expected of a cell: names of statuses, `fails` or `any`.
-    pub(super) fn expected(&self, question: &Question) -> Vec<String> {
-        let first = self.expect.iter().find(|rule| rule.holds(question));
-        first.map_or_else(|| vec![Status::Done.name().to_owned()], |rule| rule.status.list().into())
+    /// What is expected of a cell.
+    pub(super) fn expected(&self, method: Method, at: &[f64]) -> Vec<Expected> {
+        let values = self.values(at);
+        let within =
+            |(name, [from, to]): (&String, &[f64; 2])| (*from..=*to).contains(&values.get(name));
+        let holds = |rule: &&Rule| {
+            (rule.methods.is_empty() || rule.methods.contains(&method))
+                && rule.place.iter().all(within)
+        };
+        let first = self.expect.iter().find(holds);
+        first.map_or_else(|| vec![Expected::Is(Status::Done)], |rule| rule.status.clone())
     }
 
-    /// The reasons of the failures that are expected, with the methods they are of: each once.
-    pub(super) fn reasons(&self) -> Vec<(Vec<Method>, &str)> {
-        let mut reasons: Vec<(Vec<Method>, &str)> = Vec::new();
-        let of_failure =
-            |rule: &&Rule| !rule.why.is_empty() && failure_expected(rule.status.list());
-        for rule in self.expect.iter().filter(of_failure) {
-            let methods = self.methods.iter().copied().filter(|method| rule.is_of(*method));
-            let reason = (methods.collect(), &*rule.why);
-            if !reasons.contains(&reason) {
-                reasons.push(reason);
+    /// The reasons of the rules: each once.
+    pub(super) fn reasons(&self) -> Vec<&str> {
+        let mut reasons = Vec::new();
+        for rule in self.expect.iter().filter(|rule| !rule.why.is_empty()) {
+            if !reasons.contains(&&*rule.why) {
+                reasons.push(&*rule.why);
             }
         }
-        reasons.retain(|(methods, _)| !methods.is_empty());
         reasons
-    }
-
-    /// Index of the horizontal axis of pictures: that of the search, else the first one.
-    pub(super) fn horizontal(&self) -> usize {
-        let along = |search: &Search| self.axes.iter().position(|(name, _)| *name == search.along);
-        self.search.as_ref().and_then(along).unwrap_or(0)
     }
 
     /// The first problem of a map, and what is allowed.
@@ -189,87 +151,63 @@ impl Map {
         let (scene, allowed) = (self.scene, self.scene.methods());
         let used = self.expect.iter().flat_map(|rule| &rule.methods).chain(&self.methods);
         if let Some(method) = used.copied().find(|method| !allowed.contains(method)) {
-            return Some((
-                format!("{} is no method of the scene {}", method.name(), scene.name),
-                names(&allowed),
-            ));
+            let problem = format!("{} is no method of the scene {}", method.name(), scene.name);
+            return Some((problem, names(&allowed)));
         }
-        if !(1..=2).contains(&self.axes.len()) {
-            return Some((format!("{} axes", self.axes.len()), "one or two".to_owned()));
-        }
-        for (name, values) in &self.axes {
+        let is_axis = |(_, values): &(String, Vec<f64>)| {
             let ascending = values.windows(2).all(|pair| pair[0] < pair[1]);
-            if !(1..=MAX_VALUES).contains(&values.len()) || !ascending {
-                let allowed = format!("1 to {MAX_VALUES} values, each larger than the one before");
-                return Some((format!("{name} cannot be an axis"), allowed));
-            }
-        }
-        let axes = self.axes.iter().flat_map(|(name, all)| all.iter().map(move |v| (name, v)));
-        let places = self.expect.iter().flat_map(|rule| &rule.place);
-        let places = places.flat_map(|(name, all)| all.list().iter().map(move |v| (name, v)));
-        for (name, value) in axes.chain(&self.values).chain(places) {
-            let Some(parameter) = scene.parameter(name) else {
-                let known: Vec<&str> = scene.parameters.iter().map(|known| known.name).collect();
-                let problem = format!("{name} is no parameter of the scene {}", scene.name);
-                return Some((problem, known.join(", ")));
-            };
-            if !parameter.allows(*value) {
-                return Some((format!("{name} is {value}"), parameter.allowed()));
-            }
-        }
-        let is_axis = |(axis, (name, _)): (usize, &(String, Vec<f64>))| {
-            self.search.as_ref().is_none_or(|search| search.along == *name)
-                && !self.parameter(axis).whole
+            (1..=MAX_VALUES).contains(&values.len()) && ascending
         };
-        if self.search.is_some() && !self.axes.iter().enumerate().any(is_axis) {
-            let allowed = "an axis of the map whose values are real numbers".to_owned();
-            return Some(("the border is along no such axis".to_owned(), allowed));
+        if !(1..=2).contains(&self.axes.len()) || !self.axes.iter().all(is_axis) {
+            let allowed =
+                format!("one or two, of 1 to {MAX_VALUES} values, each larger than the one before");
+            return Some(("these cannot be axes".to_owned(), allowed));
         }
-        let failures = Status::all().filter(|status| status.is_failure()).map(Status::name);
-        let known: Vec<&str> =
-            [FAILS, ANY, Status::Done.name()].into_iter().chain(failures).collect();
-        let mut statuses = self.expect.iter().flat_map(|rule| rule.status.list());
-        let unknown = statuses.find(|status| !known.contains(&status.as_str()))?;
-        Some((format!("{unknown} is no status"), known.join(", ")))
+        let axes = self.axes.iter().map(|(name, _)| name);
+        let places = self.expect.iter().flat_map(|rule| rule.place.keys());
+        let mut named = axes.chain(self.values.keys()).chain(places);
+        let unknown = named.find(|name| scene.parameter(name).is_none())?;
+        let known: Vec<&str> = scene.parameters.iter().map(|known| known.name).collect();
+        let problem = format!("{unknown} is no parameter of the scene {}", scene.name);
+        Some((problem, known.join(", ")))
     }
 }
 
-/// Whether a failure is expected, and nothing else.
-pub(super) fn failure_expected(expected: &[String]) -> bool {
-    let well = [Status::Done.name(), ANY];
-    !expected.iter().any(|word| well.contains(&word.as_str()))
-}
+type Read<T, E> = std::result::Result<T, E>;
 
-/// Whether a cell is as expected.
-pub(super) fn meets(expected: &[String], cell: &Cell) -> bool {
-    expected.iter().any(|word| match word.as_str() {
-        ANY => true,
-        FAILS => cell.fails(),
-        status => status == cell.status,
-    })
-}
-
-fn scene<'de, D: Deserializer<'de>>(
-    from: D,
-) -> std::result::Result<&'static StabilityScene, D::Error> {
+fn scene<'de, D: Deserializer<'de>>(from: D) -> Read<&'static StabilityScene, D::Error> {
     let name = String::deserialize(from)?;
     let known = || SCENES.map(|scene| scene.name).join(", ");
     let found = SCENES.into_iter().find(|scene| scene.name == name);
     found.ok_or_else(|| D::Error::custom(format!("unknown scene {name}; allowed: {}", known())))
 }
 
-fn methods<'de, D: Deserializer<'de>>(from: D) -> std::result::Result<Vec<Method>, D::Error> {
+fn methods<'de, D: Deserializer<'de>>(from: D) -> Read<Vec<Method>, D::Error> {
     let mut methods = Vec::new();
     for name in Vec::<String>::deserialize(from)? {
-        let is_film = |method: &Method| name == FILM && matches!(method, Method::Film(_));
+        let is_film = |method: &Method| name == "film" && matches!(method, Method::Film(_));
         let known = methods.len();
         methods.extend(Method::all().filter(|method| method.name() == name || is_film(method)));
         if methods.len() == known {
             let all = names(&Method::all().collect::<Vec<_>>());
-            return Err(D::Error::custom(format!("unknown method {name}; allowed: {FILM}, {all}")));
+            return Err(D::Error::custom(format!("unknown method {name}; allowed: film, {all}")));
         }
     }
     Ok(methods)
+}
+
+fn expected<'de, D: Deserializer<'de>>(from: D) -> Read<Vec<Expected>, D::Error> {
+    let ends = Status::all().filter(|status| status.is_failure()).chain([Status::Done]);
+    let all: Vec<Expected> =
+        [Expected::Fails, Expected::Any].into_iter().chain(ends.map(Expected::Is)).collect();
+    let of_name = |name: String| {
+        all.iter().copied().find(|expected| expected.name() == name).ok_or_else(|| {
+            let allowed: Vec<&str> = all.iter().map(|expected| expected.name()).collect();
+            let allowed = allowed.join(", ");
+            D::Error::custom(format!("unknown status {name}; allowed: {allowed}"))
+        })
+    };
+    Vec::<String>::deserialize(from)?.into_iter().map(of_name).collect()
 }
 
 /// A file of maps.

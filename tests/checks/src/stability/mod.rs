@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! cell    one scene, one method, one value of each parameter → status, time of failure, audit, ledger residual
-//! border  the value between two cells of different outcome, by bisection: each trial is a cell too
+//! border  the value between two cells of different outcome, by bisection
 //! linear scenes:  largest stable step = 2/ω_max
 //! ```
 //!
@@ -22,7 +22,7 @@ mod picture;
 mod scenes;
 
 /// How a scene is integrated.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Method {
     /// Film with this integrator.
     Film(IntegratorKind),

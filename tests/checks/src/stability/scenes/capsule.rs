@@ -7,7 +7,7 @@ use billow_solver::scene::monitor_settings::MonitorSettings;
 use super::film::prepared;
 use super::{
     Build, CONTACT_STIFFNESS, MODULUS, Parameter, Prepared, STEP, StabilityScene, THICKNESS,
-    Values, compression, real, whole,
+    Values, compression, parameter,
 };
 use crate::cases::prelude::*;
 use crate::stability::Method;
@@ -33,19 +33,13 @@ pub(super) const SCENE: StabilityScene = StabilityScene {
         THICKNESS,
         MODULUS,
         CONTACT_STIFFNESS,
-        whole("subdivisions", 2.0, [2.0, 6.0], "design.subdivisions"),
-        real("stowed_height", paper::STOWED_HEIGHT, [1e-6, 0.5], "m", "design.stowed_height"),
-        real(
-            "mass_flow_rate",
-            paper::MASS_FLOW_RATE,
-            [0.0, 1e3],
-            "kg/s",
-            "inflow from 0 to the end",
-        ),
-        real("residual_mass", 0.0, [0.0, 10.0], "kg", "mass of the gas at the start"),
-        real("burst", 0.0, [0.0, 0.04], "s", "length of a burst; 0: none"),
-        real("burst_mass", 1e-4, [0.0, 1.0], "kg", "mass of the burst"),
-        real("fixed_step", 0.0, [0.0, 0.05], "s", "fixed step of the model piston; 0: adaptive"),
+        parameter("subdivisions", 2.0, "number", "design.subdivisions"),
+        parameter("stowed_height", paper::STOWED_HEIGHT, "m", "design.stowed_height"),
+        parameter("mass_flow_rate", paper::MASS_FLOW_RATE, "kg/s", "inflow from 0 to the end"),
+        parameter("residual_mass", 0.0, "kg", "mass of the gas at the start"),
+        parameter("burst", 0.0, "s", "length of a burst; 0: none"),
+        parameter("burst_mass", 1e-4, "kg", "mass of the burst"),
+        parameter("fixed_step", 0.0, "s", "fixed step of the model piston; 0: adaptive"),
     ],
     build: Build::FilmAndModels(build),
 };

@@ -13,7 +13,7 @@ use billow_solver::scene::paper::TEMPERATURE;
 use super::stiffness::fastest_mode;
 use super::{
     Build, CONTACT_STIFFNESS, DAMPING, MODULUS, Parameter, Prepared, STEP, StabilityScene,
-    THICKNESS, Values, compression, real, whole,
+    THICKNESS, Values, compression, parameter,
 };
 use crate::cases::prelude::*;
 
@@ -43,7 +43,7 @@ const FILMS_END: f64 = 4e-3;
 
 /// The modulus of one of two parts of film over that of the other one. Not above 1: the stiff part bounds the step.
 const fn soft(meaning: &'static str) -> Parameter {
-    real("soft", 1.0, [1e-9, 1.0], "ratio", meaning)
+    parameter("soft", 1.0, "ratio", meaning)
 }
 
 /// The sheet.
@@ -56,17 +56,10 @@ pub(super) const SHEET: StabilityScene = StabilityScene {
         compression(1.0),
         THICKNESS,
         MODULUS,
-        real(
-            "sliver",
-            1.0,
-            [1e-6, 1.0],
-            "ratio",
-            "height of the elements over that of well-shaped ones",
-        ),
-        real(
+        parameter("sliver", 1.0, "ratio", "height of the elements over that of well-shaped ones"),
+        parameter(
             "slack",
             0.0,
-            [0.0, 0.9],
             "ratio",
             "share by which the sheet starts shortened in both directions",
         ),
@@ -85,12 +78,12 @@ pub(super) const BAG: StabilityScene = StabilityScene {
         compression(0.0),
         THICKNESS,
         MODULUS,
-        whole("level", 1.0, [0.0, 3.0], "refinements of the icosahedron"),
-        real("flatness", 0.3, [0.0, 1.0], "ratio", "height at the start over that of the sphere"),
-        real("mass_flow_rate", 5e-3, [0.0, 1e3], "kg/s", "inflow from 0 to the end"),
-        real("residual_pressure", 1.0, [0.0, 1e9], "Pa", "pressure of the gas at the start"),
-        real("burst_steps", 0.0, [0.0, 1e3], "stable steps", "length of a burst; 0: none"),
-        real("burst_mass", 1e-4, [0.0, 1.0], "kg", "mass of the burst"),
+        parameter("level", 1.0, "number", "refinements of the icosahedron"),
+        parameter("flatness", 0.3, "ratio", "height at the start over that of the sphere"),
+        parameter("mass_flow_rate", 5e-3, "kg/s", "inflow from 0 to the end"),
+        parameter("residual_pressure", 1.0, "Pa", "pressure of the gas at the start"),
+        parameter("burst_steps", 0.0, "stable steps", "length of a burst; 0: none"),
+        parameter("burst_mass", 1e-4, "kg", "mass of the burst"),
     ],
     build: Build::Film(filled_bag),
 };
@@ -106,11 +99,10 @@ pub(super) const FILMS: StabilityScene = StabilityScene {
         THICKNESS,
         MODULUS,
         CONTACT_STIFFNESS,
-        real("speed", 5.0, [0.0, 1e4], "m/s", "speed of approach"),
-        real(
+        parameter("speed", 5.0, "m/s", "speed of approach"),
+        parameter(
             "gap",
             2.0,
-            [0.0, 100.0],
             "contact distances",
             "gap at the start; the contact distance is 2 mm; 0: facets coincide",
         ),

@@ -1,5 +1,7 @@
 //! The small scenes of the map, and the parameters that a map may vary in each.
 
+use std::collections::BTreeMap;
+
 use billow_solver::geometry::field::Field;
 use billow_solver::system::FilmSystem;
 
@@ -11,18 +13,11 @@ mod film;
 mod stiffness;
 mod vessel;
 
-/// Raised when a scene changes: cells of other versions run again.
-pub(super) const VERSION: u32 = 2;
-
 /// A parameter of a scene.
 pub(super) struct Parameter {
     pub(super) name: &'static str,
     /// Value where a map gives none.
     default: f64,
-    /// Smallest and largest value.
-    range: [f64; 2],
-    /// Whether only whole numbers are values.
-    pub(super) whole: bool,
     /// Unit, or what a number without unit is.
     unit: &'static str,
     pub(super) meaning: &'static str,
@@ -33,97 +28,74 @@ impl Parameter {
     pub(super) fn label(&self) -> String {
         format!("{} ({})", self.name, self.unit)
     }
-
-    /// Whether it can have this value.
-    pub(super) fn allows(&self, value: f64) -> bool {
-        (self.range[0]..=self.range[1]).contains(&value) && !(self.whole && value.fract() != 0.0)
-    }
-
-    /// The values that it can have, in words.
-    pub(super) fn allowed(&self) -> String {
-        let whole = if self.whole { "whole number" } else { "number" };
-        format!("a {whole} from {} to {} ({})", self.range[0], self.range[1], self.unit)
-    }
 }
 
-/// A parameter of real numbers.
-const fn real(
+const fn parameter(
     name: &'static str,
     default: f64,
-    range: [f64; 2],
     unit: &'static str,
     meaning: &'static str,
 ) -> Parameter {
-    Parameter { name, default, range, whole: false, unit, meaning }
-}
-
-/// A parameter of whole numbers.
-const fn whole(
-    name: &'static str,
-    default: f64,
-    range: [f64; 2],
-    meaning: &'static str,
-) -> Parameter {
-    Parameter { name, default, range, whole: true, unit: "number", meaning }
+    Parameter { name, default, unit, meaning }
 }
 
 const STEP: Parameter =
-    real("step", 0.45, [0.01, 4.0], "CFL number", "step over the stable step of the element bound");
-const DAMPING: Parameter = real("damping", 0.0, [0.0, 10.0], "ratio", "film.numerical_damping");
-const THICKNESS: Parameter = real("thickness", 25.4e-6, [1e-7, 1e-1], "m", "film.thickness");
-const MODULUS: Parameter = real("modulus", 3.45e9, [1e3, 1e14], "Pa", "film.youngs_modulus");
-const CONTACT_STIFFNESS: Parameter = real(
+    parameter("step", 0.45, "CFL number", "step over the stable step of the element bound");
+const DAMPING: Parameter = parameter("damping", 0.0, "ratio", "film.numerical_damping");
+const THICKNESS: Parameter = parameter("thickness", 25.4e-6, "m", "film.thickness");
+const MODULUS: Parameter = parameter("modulus", 3.45e9, "Pa", "film.youngs_modulus");
+const CONTACT_STIFFNESS: Parameter = parameter(
     "contact_stiffness",
     1.0,
-    [1e-6, 1e6],
     "ratio",
     "stiffness of contact over the one chosen for the step",
 );
 
 const fn compression(default: f64) -> Parameter {
-    real("compression", default, [0.0, 1.0], "ratio", "film.compression")
+    parameter("compression", default, "ratio", "film.compression")
 }
 
-/// The values of the parameters of a scene, in the order of its list.
-pub(super) struct Values(pub(super) Vec<(&'static str, f64)>);
+/// The values of the parameters of a scene.
+pub(super) struct Values(pub(super) BTreeMap<&'static str, f64>);
 
 impl Values {
-    /// The defaults of a scene.
-    pub(super) fn of(scene: &StabilityScene) -> Self {
-        Self(scene.parameters.iter().map(|parameter| (parameter.name, parameter.default)).collect())
+    /// Some values of a scene, and its defaults for the others.
+    pub(super) fn of<'a>(
+        scene: &StabilityScene,
+        given: impl Iterator<Item = (&'a String, &'a f64)>,
+    ) -> Self {
+        let defaults = scene.parameters.iter().map(|parameter| (parameter.name, parameter.default));
+        let mut values: BTreeMap<&str, f64> = defaults.collect();
+        for (name, value) in given {
+            if let Some(parameter) = scene.parameter(name) {
+                values.insert(parameter.name, *value);
+            }
+        }
+        Self(values)
     }
 
-    /// The value of a parameter; NaN for one that the scene does not have.
+    /// The value of a parameter that the scene has.
     pub(super) fn get(&self, name: &str) -> f64 {
-        self.find(name).unwrap_or(f64::NAN)
+        self.0[name]
     }
 
-    fn find(&self, name: &str) -> Option<f64> {
-        self.0.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
-    }
-
-    /// The value of a parameter of whole numbers, within its range.
+    /// The value of a parameter of whole numbers.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 8")]
     fn count(&self, name: &str) -> u32 {
         self.get(name) as u32
     }
 
-    /// Sets a parameter that the scene has.
-    pub(super) fn set(&mut self, name: &str, value: f64) {
-        for (_, old) in self.0.iter_mut().filter(|(known, _)| *known == name) {
-            *old = value;
-        }
-    }
-
     /// The elastic film of the values, without loss.
     fn film(&self) -> Film {
+        let value = |name: &str, default: f64| self.0.get(name).copied().unwrap_or(default);
+        let film = Film::PAPER_ELASTIC;
         Film {
             // A scene without motion has none.
-            numerical_damping: self.find("damping").unwrap_or(0.0),
-            compression: self.find("compression").unwrap_or(Film::PAPER_ELASTIC.compression),
+            numerical_damping: value("damping", 0.0),
+            compression: value("compression", film.compression),
             thickness: self.get("thickness"),
             youngs_modulus: self.get("modulus"),
-            ..Film::PAPER_ELASTIC
+            ..film
         }
     }
 }

@@ -7,13 +7,12 @@ use billow_solver::system::{FilmSystem, PressureLoad};
 
 use super::film::flattened_bag;
 use super::{
-    Build, MODULUS, Parameter, Prepared, StabilityScene, THICKNESS, Values, compression, real,
-    whole,
+    Build, MODULUS, Parameter, Prepared, StabilityScene, THICKNESS, Values, compression, parameter,
 };
 use crate::cases::prelude::*;
 
 const OVERPRESSURE: Parameter =
-    real("overpressure", 100.0, [1e-9, 1e9], "Pa", "overpressure on the inside");
+    parameter("overpressure", 100.0, "Pa", "overpressure on the inside");
 
 /// The bag.
 pub(super) const BAG: StabilityScene = StabilityScene {
@@ -23,8 +22,8 @@ pub(super) const BAG: StabilityScene = StabilityScene {
         compression(0.0),
         THICKNESS,
         MODULUS,
-        whole("level", 1.0, [0.0, 3.0], "refinements of the icosahedron"),
-        real("flatness", 1.0, [0.0, 1.0], "ratio", "height at the start over that of the sphere"),
+        parameter("level", 1.0, "number", "refinements of the icosahedron"),
+        parameter("flatness", 1.0, "ratio", "height at the start over that of the sphere"),
         OVERPRESSURE,
     ],
     build: Build::Statics(bag),
@@ -37,7 +36,7 @@ pub(super) const CAPSULE: StabilityScene = StabilityScene {
     parameters: &[
         THICKNESS,
         MODULUS,
-        whole("subdivisions", 2.0, [2.0, 8.0], "design.subdivisions"),
+        parameter("subdivisions", 2.0, "number", "design.subdivisions"),
         OVERPRESSURE,
     ],
     build: Build::Statics(capsule),
