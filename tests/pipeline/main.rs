@@ -11,21 +11,16 @@ mod doctor_and_rerun;
 mod film_study;
 mod fold;
 mod frames;
-#[path = "../torture/harness"]
-#[expect(dead_code, reason = "the other numbers are for `make torture`")]
-mod harness {
-    pub mod random;
-}
 mod keys;
 mod mangled_studies;
 mod memory;
 mod monitor_and_blind_contact;
-#[path = "../torture/kinds/mutations"]
-mod mutations {
-    pub mod bytes;
-    pub mod json;
-}
+#[path = "../torture/mutate.rs"]
+mod mutate;
 mod plan;
+#[path = "../torture/random.rs"]
+#[expect(dead_code, reason = "the other numbers are for `make torture`")]
+mod random;
 mod rank_and_borders;
 mod refused;
 mod replicate_tables;

@@ -8,8 +8,8 @@ use billow_study::study::Study;
 use billow_study::study::plan::next_jobs;
 use serde_json::{Value as Json, json};
 
-use crate::harness::random::Random;
-use crate::mutations::{bytes, json};
+use crate::mutate;
+use crate::random::Random;
 
 /// A shipped study with short axes, so that it plans quickly.
 fn shortened(path: &std::path::Path) -> Json {
@@ -37,8 +37,8 @@ fn fifty_thousand_mangled_studies_plan_or_name_their_error() {
     for round in 0..50_000_u32 {
         let study = random.pick(&studies).clone();
         let text = match round % 2 {
-            0 => bytes::mutated(format!("{study:#}").as_bytes(), &mut random),
-            _ => json::mutated(&study, &mut random),
+            0 => mutate::bytes(format!("{study:#}").as_bytes(), &mut random),
+            _ => mutate::json(&study, &mut random),
         };
         let study = study_file::text_of(&text, "fuzz.json")
             .and_then(|text| Study::from_text(text, "fuzz.json", "fuzz", &[], 24));

@@ -1,27 +1,22 @@
-//! Random numbers that follow from a seed (`SplitMix64`: Steele, Lea, Flood 2014).
+//! Random numbers that follow from a seed.
 
 use sha2::{Digest, Sha256};
 
-/// A generator.
-pub struct Random {
-    state: u64,
-}
+/// A generator (`SplitMix64`: Steele, Lea, Flood 2014).
+pub struct Random(u64);
 
 impl Random {
-    /// The generator of one trial.
+    /// The numbers of one trial.
     pub fn of_trial(seed: u64, kind: &str, number: usize) -> Self {
         let digest = Sha256::digest(format!("{seed} {kind} {number}"));
-        let mut state = [0; 8];
-        state.copy_from_slice(&digest[..8]);
-        Self { state: u64::from_le_bytes(state) }
+        Self(digest[..8].iter().fold(0, |state, byte| state << 8 | u64::from(*byte)))
     }
 
     /// The next number.
     pub fn next(&mut self) -> u64 {
-        self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut mixed = self.state;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         mixed ^ (mixed >> 31)
     }
 
