@@ -92,7 +92,7 @@ pub fn svg(source: &Source<'_>, over: Option<&str>, by: &[String]) -> Result<Str
     let others = parameters::strategy_first(others);
     let positions = Positions::new(&x, &points.rows);
     let asked = ("--borders", search.parameter);
-    let encoding = Encoding::new(&points, others, by, PREFERRED_LINES, positions.names, asked)?;
+    let encoding = Encoding::new(&points, &others, by, PREFERRED_LINES, positions.names, asked)?;
     let mut drawing =
         Drawing::new(source.parameter("--borders", search.parameter)?, search, &found);
     let panels: Vec<Panel> = encoding
@@ -290,7 +290,7 @@ impl<'d> Drawing<'d> {
                 }
                 match &border.outcome {
                     SearchResult::Border { .. } => {
-                        piece.extend(line.marks.last().map(|mark| mark.0))
+                        piece.extend(line.marks.last().map(|mark| mark.0));
                     }
                     _ => line.pieces.push(std::mem::take(&mut piece)),
                 }

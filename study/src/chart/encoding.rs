@@ -37,7 +37,7 @@ impl<'a> Encoding<'a> {
     /// Too many lines or panels: `asked` is the option and its value.
     pub fn new(
         source: &Source<'a>,
-        others: Vec<Parameter<'a>>,
+        others: &[Parameter<'a>],
         by: &[String],
         preferred: usize,
         points: bool,
@@ -48,7 +48,7 @@ impl<'a> Encoding<'a> {
         }
         let dashes = if points { 0 } else { MAX_DASHES };
         let divided = |preferred: usize| {
-            let mut panels = others.clone();
+            let mut panels = others.to_vec();
             let count = |parameter: &Parameter<'a>| parameter.values(&source.rows).len();
             let mut lines = Vec::new();
             // Takes the first parameter that `by` names, or any if it is empty, with at most this number of values.

@@ -73,7 +73,7 @@ pub fn svg(
     }
     let asked = columns.join(",");
     let encoding = |preferred: usize| {
-        Encoding::new(&stored, others.clone(), &[], preferred, false, ("--history", &asked))
+        Encoding::new(&stored, &others, &[], preferred, false, ("--history", &asked))
     };
     let encoding = match quantities.as_slice() {
         [only] if only.thin => encoding(MAX_THIN_LINES).or_else(|_| encoding(PREFERRED_LINES))?,

@@ -27,7 +27,7 @@ pub fn svg(source: &Source<'_>, measure: &str, over: &str, by: &[String]) -> Res
     let others = parameters::strategy_first(others);
     let positions = Positions::new(&x, &source.rows);
     let encoding =
-        Encoding::new(source, others, by, PREFERRED_LINES, positions.names, ("--over", over))?;
+        Encoding::new(source, &others, by, PREFERRED_LINES, positions.names, ("--over", over))?;
 
     let of_row = |row: &usize| {
         let ends = [source.range(measure, *row), source.mesh_error(measure, *row)];

@@ -290,11 +290,11 @@ impl Drawing<'_> {
             panel.lines.push(self.line(errors, number, (*chain, new)));
         }
         if panel.lines.iter().all(|line| line.marks.is_empty() && line.crosses.is_empty()) {
-            panel.message = match errors.reference {
+            let message = match errors.reference {
                 None => "no trusted configuration has run",
                 Some(_) => "nothing to compare with the reference",
-            }
-            .to_owned();
+            };
+            message.clone_into(&mut panel.message);
             (panel.lines, panel.rules) = (Vec::new(), Vec::new());
         }
         panel

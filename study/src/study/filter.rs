@@ -17,9 +17,12 @@ const FEASIBLE: &str = "feasible";
 /// The key whose words are the strategies of the study.
 const STRATEGY: usize = position(KEYS, "strategy");
 
+/// Name, dimension and value of a quantity that the fold solves.
+type Solved = (&'static str, Dimension, fn(&FoldPattern) -> f64);
+
 /// The quantities that the fold solves. A name stands for the solved value, not for the key of the same name;
 /// without a fold, for the value the study asks for, where it has such a key.
-const SOLVED: [(&str, Dimension, fn(&FoldPattern) -> f64); 6] = [
+const SOLVED: [Solved; 6] = [
     ("phi", Dimension::Angle, |pattern| pattern.angles.phi),
     ("alpha1", Dimension::Angle, |pattern| pattern.angles.alpha1),
     ("ring_ratio", Dimension::Number, |pattern| pattern.angles.ring_ratio),

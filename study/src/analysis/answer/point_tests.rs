@@ -65,10 +65,14 @@ fn seeds_do_not_multiply_pairs_and_a_value_is_the_best_where_all_its_runs_deploy
     let tally = ranking.measures[0].against_best[1].as_ref().unwrap();
     assert_eq!((ranking.measures[0].best, tally.pairs()), (Some(0), 2));
     assert_eq!((tally.count(compare::Better::Other), tally.ratio.unwrap().median), (2, 0.5));
-    runs.iter_mut().for_each(|run| run.5 = "deployed");
+    for run in &mut runs {
+        run.5 = "deployed";
+    }
     assert_eq!(compared(&runs).measures[0].best, Some(0));
     assert_eq!(compared(&runs).candidates[0].values[0].to_string(), "rapid", "the gentler one");
-    runs.iter_mut().for_each(|run| run.3 = 1.0);
+    for run in &mut runs {
+        run.3 = 1.0;
+    }
     assert_eq!(compared(&runs).measures[0].equal, [true, true]);
 }
 

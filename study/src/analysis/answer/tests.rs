@@ -106,18 +106,17 @@ fn the_hardest_job_can_be_trusted_where_any_can() {
 fn study(rows: &[(&str, f64, f64, f64)]) -> Table {
     let text =
         |of: &dyn Fn(usize) -> String| (0..rows.len()).map(|row| Value::Text(of(row))).collect();
-    let numbers = |of: &dyn Fn(&(&str, f64, f64, f64)) -> f64| {
-        rows.iter().map(|row| Value::Number(of(row))).collect()
-    };
+    let numbers =
+        |of: &dyn Fn(usize) -> f64| (0..rows.len()).map(|row| Value::Number(of(row))).collect();
     Table {
         columns: vec![
             column("job", CellType::Text, text(&|row| format!("job {row}"))),
             column("strategy", CellType::Text, text(&|row| rows[row].0.to_owned())),
-            column("mass", CellType::Number, numbers(&|row| row.1)),
+            column("mass", CellType::Number, numbers(&|row| rows[row].1)),
             column("status", CellType::Text, text(&|_| "done".to_owned())),
             column("verdict", CellType::Text, text(&|_| "deployed".to_owned())),
-            column(HEADLINE[0].name(), CellType::Number, numbers(&|row| row.2)),
-            column(HEADLINE[1].name(), CellType::Number, numbers(&|row| row.3)),
+            column(HEADLINE[0].name(), CellType::Number, numbers(&|row| rows[row].2)),
+            column(HEADLINE[1].name(), CellType::Number, numbers(&|row| rows[row].3)),
             column("passages", CellType::Integer, vec![Value::Integer(0); rows.len()]),
         ],
     }

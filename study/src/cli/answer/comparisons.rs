@@ -100,11 +100,10 @@ fn measured(ranking: &Ranking, index: usize, measure: &RankedMeasure) -> Option<
         Some(format!("{name} {}{mark}", measure.column.shown.brief(median)))
     };
     let texts = listed(order.iter().filter_map(|position| text(*position)));
-    let equal = match all_equal {
-        true if measure.best == Some(first) => {
-            format!(" equal within {}:", measure.tolerance.text())
-        }
-        _ => String::new(),
+    let equal = if all_equal && measure.best == Some(first) {
+        format!(" equal within {}:", measure.tolerance.text())
+    } else {
+        String::new()
     };
     Some(format!("{name}{equal} {texts}"))
 }

@@ -203,7 +203,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         vec![(args.kind(&source)?, source)]
     } else {
         let (charts, notes) = kinds::standard(&source);
-        notes.iter().for_each(|note| args.note(note));
+        for note in &notes {
+            args.note(note);
+        }
         charts
     };
     let read = |id: &JobId| results.read_history(id, stored.record(id));

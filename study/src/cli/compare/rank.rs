@@ -60,7 +60,9 @@ pub(super) fn run(
             column.is_some_and(|column| compare::values(column, &rows).len() > 1)
         };
         let matched: Vec<String> = ranking.matched.iter().filter(varies).cloned().collect();
-        notes(&ranking, &matched, study, with_runs).iter().for_each(|note| eprintln!("{note}"));
+        for note in notes(&ranking, &matched, study, with_runs) {
+            eprintln!("{note}");
+        }
     }
     Ok(())
 }

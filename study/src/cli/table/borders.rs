@@ -34,7 +34,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let is_printed = |column: &&Column| {
         let optional = OPTIONAL.contains(&column.name.as_str());
         let inner = ["search", "status"].contains(&column.name.as_str());
-        !inner && !(optional && format == Format::Table && column.is_empty())
+        !(inner || optional && format == Format::Table && column.is_empty())
     };
     let columns: Vec<&Column> = borders.columns[..found].iter().filter(is_printed).collect();
     print_table(&borders, &columns, &rows, format, out)?;
