@@ -174,7 +174,6 @@ fn comparison(
         limits,
         measures: &DEFAULT_MEASURES,
         zipped,
-        dominance: false,
     })?;
     if ranking.is_one_job {
         return Err(format!("points that differ in {by} alone are one job"));

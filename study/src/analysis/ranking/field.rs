@@ -36,12 +36,6 @@ impl Field<'_> {
         // The sort is stable: equal candidates stay in plan order.
         found.sort_by_key(|(index, _)| *index);
         found.sort_by(|a, b| self.compare(&a.1, &b.1));
-        let order: Vec<usize> = found.iter().map(|(index, _)| *index).collect();
-        for (rank, (_, candidate)) in found.iter_mut().enumerate().filter(|_| self.dominance) {
-            // One after it can dominate it: the order decides by differences within the spread, too.
-            let first = order.iter().position(|other| self.dominates(*other, order[rank]));
-            candidate.dominated_by = first.map(|position| position + 1);
-        }
         let measures = blocks.iter().enumerate();
         let measures = measures.map(|(index, (_, sets))| self.ranked_measure(index, sets, &found));
         Ranking {
@@ -167,7 +161,6 @@ impl Field<'_> {
             margin: self.worst(&points),
             measures: measures.collect(),
             ranges: ranges.collect(),
-            dominated_by: None,
             values,
         }
     }
@@ -182,7 +175,7 @@ impl Field<'_> {
     }
 
     /// Of all runs of some points, those that are not safe, or without limits those that do not deploy.
-    pub(super) fn missed(&self, points: &[usize]) -> Proportion {
+    fn missed(&self, points: &[usize]) -> Proportion {
         self.sum(points, &|runs| {
             let met = match self.basis {
                 Basis::Limits => runs.safe.met,
@@ -194,7 +187,7 @@ impl Field<'_> {
     }
 
     /// The smallest margin over some points.
-    pub(super) fn worst(&self, points: &[usize]) -> Option<(f64, String)> {
+    fn worst(&self, points: &[usize]) -> Option<(f64, String)> {
         let margins = points.iter().filter_map(|point| self.margins[*point].clone());
         margins.min_by(|a, b| a.0.total_cmp(&b.0))
     }
@@ -209,13 +202,13 @@ impl Field<'_> {
     }
 
     /// The same with its range over the runs of the point.
-    pub(super) fn range(&self, measure: usize, set: &Set, candidate: usize) -> Option<Range> {
+    fn range(&self, measure: usize, set: &Set, candidate: usize) -> Option<Range> {
         let point = set[candidate].filter(|point| self.trusted(*point))?;
         self.measures[measure].range(self.table, point)
     }
 
     /// Whether a candidate has a value of a measure in any set.
-    pub(super) fn has(&self, measure: usize, candidate: usize) -> bool {
+    fn has(&self, measure: usize, candidate: usize) -> bool {
         self.sets.iter().any(|set| self.value(measure, set, candidate).is_some())
     }
 }

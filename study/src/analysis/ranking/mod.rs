@@ -8,8 +8,7 @@
 //! ```
 //! Only sets in which every ranked candidate has a point that has ended count, so all candidates are judged by
 //! the same conditions. Without limits the points and runs that do not deploy take the place of those not safe;
-//! without verdicts the measures decide alone. A candidate is dominated by another one that is not worse in
-//! anything and better in something, up to the spread of each measure.
+//! without verdicts the measures decide alone.
 
 use super::compare::{Measure, Range, Set, Tally, Tolerance};
 use super::replicates::Condensed;
@@ -22,7 +21,6 @@ use crate::job::row::{BetterSide, ColumnId};
 use crate::store::table::{Column, Table};
 use crate::study::Zipped;
 
-mod dominance;
 mod field;
 mod order;
 mod sets;
@@ -50,8 +48,6 @@ pub struct RankingInput<'a> {
     pub measures: &'a [ColumnId],
     /// The parameters on the axis of one.
     pub zipped: &'a dyn Fn(&str) -> Vec<Zipped>,
-    /// Whether each candidate is compared with each other one, to find those that are dominated.
-    pub dominance: bool,
 }
 
 /// Candidates, the best one first.
@@ -138,17 +134,13 @@ pub struct Candidate {
     pub measures: Vec<Option<Spread>>,
     /// Each measure: the medians of the smallest values, the medians and the largest values of its points.
     pub ranges: Vec<Option<Range>>,
-    /// Rank of the first other candidate that dominates it.
-    pub dominated_by: Option<usize>,
 }
 
 /// The data of a ranking: points, and sets of them with one point per candidate.
 struct Field<'a> {
     points: &'a Condensed,
     by: &'a [String],
-    dominance: bool,
     table: &'a Table,
-    limits: &'a [ResultLimit],
     measures: Vec<Measure<'a>>,
     /// Positions of the ranked candidates in a set.
     chosen: Vec<usize>,
@@ -193,9 +185,7 @@ impl Ranking {
         let field = Field {
             points: &points,
             by: input.by,
-            dominance: input.dominance,
             table,
-            limits: input.limits,
             measures: measures.collect(),
             sets: kept,
             basis: basis(input.limits, &points),

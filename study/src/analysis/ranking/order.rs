@@ -53,7 +53,7 @@ fn margins(a: &Candidate, b: &Candidate) -> Ordering {
 }
 
 /// By the proportion of runs that miss, the smaller one first: k₁/n₁ against k₂/n₂, without division.
-pub(super) fn missed(a: Proportion, b: Proportion) -> Ordering {
+fn missed(a: Proportion, b: Proportion) -> Ordering {
     (a.met * b.of).cmp(&(b.met * a.of))
 }
 

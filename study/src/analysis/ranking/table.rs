@@ -61,7 +61,6 @@ impl Ranking {
                 columns.push(Column { cell_type: CellType::Number, ..column });
             }
         }
-        columns.push(count("dominated_by", &|one| one.dominated_by));
         Table { columns }
     }
 }

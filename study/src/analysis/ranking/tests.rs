@@ -50,7 +50,6 @@ fn ranked(runs: &[Run], by: &[&str], limits: &[ResultLimit]) -> Ranking {
         limits,
         measures: &[ColumnId::PeakVz],
         zipped: &|_| Vec::new(),
-        dominance: true,
     })
     .unwrap()
 }
@@ -92,14 +91,12 @@ fn limits_come_before_measures_and_every_run_of_a_point_must_be_safe() {
     // Medians over the points; ranges over all runs.
     let spread = ranking.candidates[1].measures[0].unwrap();
     assert_eq!((spread.median, spread.least, spread.largest), (12.75, 8.0, 25.0));
-    assert!(ranking.candidates.iter().all(|candidate| candidate.dominated_by.is_none()));
     // Without limits what does not deploy comes last, then the speed decides.
     let ranking = ranked(&GRID, &["strategy"], &[]);
     assert_eq!(
         (order(&ranking), ranking.basis),
         (vec!["a".to_owned(), "c".into(), "b".into()], Basis::Verdicts)
     );
-    assert_eq!(ranking.candidates[1].dominated_by, Some(1), "c is faster and deploys no more");
     let words: Vec<Run> = GRID.iter().map(|run| (run.0, run.1, run.2, run.3, "")).collect();
     let ranking = ranked(&words, &["strategy"], &[]);
     assert_eq!(
@@ -132,23 +129,10 @@ fn points_that_not_every_candidate_has_change_nothing() {
 }
 
 #[test]
-fn all_parameters_rank_every_point_and_the_worse_ones_are_dominated() {
+fn all_parameters_rank_every_point() {
     let ranking = ranked(&GRID, &["strategy", "mass"], &limits());
     assert_eq!(order(&ranking), ["a 1", "c 1", "c 2", "a 2", "b 1", "b 2"]);
     assert_eq!((ranking.sets, ranking.matched.len()), (1, 0));
-    let dominated: Vec<_> = ranking.candidates.iter().map(|c| c.dominated_by).collect();
-    // Strategy b moves less than the others, so none of these dominates it.
-    assert_eq!(dominated, [None, Some(1), Some(1), Some(1), None, Some(5)]);
-}
-
-#[test]
-fn candidates_equal_within_the_spread_do_not_dominate_each_other() {
-    let runs = [("a", 1.0, 1, 10.0, DEPLOYED), ("b", 1.0, 1, 10.3, DEPLOYED)];
-    let ranking = ranked(&runs, &["strategy"], &limits());
-    assert_eq!(order(&ranking), ["a", "b"]);
-    assert_eq!(ranking.candidates[1].dominated_by, None, "5 % is the spread of peak_vz");
-    let runs = [("a", 1.0, 1, 10.0, DEPLOYED), ("b", 1.0, 1, 12.0, DEPLOYED)];
-    assert_eq!(ranked(&runs, &["strategy"], &limits()).candidates[1].dominated_by, Some(1));
 }
 
 #[test]
@@ -161,33 +145,6 @@ fn rounding_errors_decide_no_order() {
         let ranking = ranked(&runs, &["strategy"], &limits());
         assert_eq!(order(&ranking), ["b", "a"]);
     }
-}
-
-#[test]
-fn a_candidate_can_be_dominated_by_a_later_one() {
-    // The margin and the speed of a are better by less than the spread; b has far less energy.
-    let mut limits = limits();
-    limits.truncate(1);
-    let runs = [("a", 1.0, 1, 10.0, DEPLOYED), ("b", 1.0, 1, 10.1, DEPLOYED)];
-    let table = table(&runs).judged(&limits);
-    let mut energy = table.column("peak_vz").unwrap().clone();
-    ColumnId::PeakKineticEnergy.name().clone_into(&mut energy.name);
-    energy.cells = [9.0, 1.0].map(Value::Number).to_vec();
-    let table = Table { columns: [table.columns, vec![energy]].concat() };
-    let ranking = Ranking::of(&RankingInput {
-        table: &table,
-        rows: &[0, 1],
-        by: &["strategy".to_owned()],
-        replicates: &["seed".to_owned()],
-        limits: &limits,
-        measures: &[ColumnId::PeakVz, ColumnId::PeakKineticEnergy],
-        zipped: &|_| Vec::new(),
-        dominance: true,
-    })
-    .unwrap();
-    assert_eq!(order(&ranking), ["a", "b"]);
-    let dominated: Vec<_> = ranking.candidates.iter().map(|c| c.dominated_by).collect();
-    assert_eq!(dominated, [Some(2), None]);
 }
 
 #[test]
@@ -204,26 +161,5 @@ fn of_two_points_that_are_not_safe_the_one_with_fewer_runs_missed_is_better() {
         assert_eq!(order(&ranking), ["b", "a"]);
         let missed: Vec<_> = ranking.candidates.iter().map(|c| c.missed).collect();
         assert_eq!(missed, [Proportion { met: 1, of: 5 }, Proportion { met: 5, of: 5 }]);
-        assert!(ranking.candidates.iter().all(|candidate| candidate.dominated_by.is_none()));
-    }
-    // Equally fast, b is better in the runs alone, and dominates.
-    let equal: Vec<Run> = runs.iter().map(|run| (run.0, run.1, run.2, 9.0, run.4)).collect();
-    for limits in [limits(), Vec::new()] {
-        assert_eq!(ranked(&equal, &["strategy"], &limits).candidates[1].dominated_by, Some(1));
-    }
-}
-
-#[test]
-fn a_point_dominates_where_the_ranges_of_the_runs_do_not_overlap() {
-    let with = |speeds: [[f64; 2]; 2]| {
-        let runs = (1_i64..).zip(speeds).flat_map(|(seed, [a, b])| {
-            [("a", 1.0, seed, a, DEPLOYED), ("b", 1.0, seed, b, DEPLOYED)]
-        });
-        ranked(&runs.collect::<Vec<_>>(), &["strategy"], &limits()[1..])
-    };
-    let apart = with([[8.0, 11.0], [10.0, 13.0]]);
-    assert_eq!(apart.candidates[1].dominated_by, Some(1));
-    let overlapping = with([[8.0, 9.0], [10.0, 15.0]]);
-    assert_eq!(order(&overlapping), ["a", "b"]);
-    assert_eq!(overlapping.candidates[1].dominated_by, None, "equal: 9 is in the range of a");
+        }
 }

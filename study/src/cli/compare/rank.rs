@@ -38,7 +38,6 @@ pub(super) fn run(
         limits: study.result_limits(),
         measures: &measures,
         zipped: &|name| study.zipped_with(name),
-        dominance: true,
     };
     let ranking = Ranking::of(&input).map_err(|problem| {
         let allowed = "parameters of which two values have ended points that are equal in all else";
