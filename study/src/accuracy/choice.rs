@@ -14,7 +14,7 @@ use billow_solver::scene::{ModelKind, Scene, Stepping};
 
 use super::entry::{Entry, Method};
 use super::features::{FEATURES, Features, STEP};
-use super::promised::{PROMISED, Promised, Tolerances};
+use super::promised::PROMISED;
 use super::table::MeshErrors;
 
 /// Cost of a run of the piston. Measured: seconds over those of film on 24 subdivisions, results/pareto.
@@ -36,26 +36,27 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// Whether its model can compute the scenes, and every measure with a tolerance keeps it.
-    pub fn keeps(&self, tolerances: &Tolerances) -> bool {
-        let mut pairs = self.errors.iter().zip(tolerances);
-        self.refusal.is_none()
-            && pairs.all(|(error, tolerance)| tolerance.is_none_or(|most| *error <= most))
+    /// Whether its model can compute the scenes, with no error above this one.
+    pub fn keeps(&self, accuracy: f64) -> bool {
+        self.refusal.is_none() && self.asked().all(|(_, error)| error <= accuracy)
     }
 
-    /// Its errors of the measures that have a tolerance, as in `t_90_z_rim 5.5 %`.
-    pub fn errors_text(&self, tolerances: &Tolerances) -> String {
-        let known = PROMISED.iter().zip(self.errors).zip(tolerances);
-        let judged = known.filter(|(_, tolerance)| tolerance.is_some());
-        let text = |((promised, error), _): ((&Promised, f64), _)| {
-            let name = promised.measure.name();
+    /// The measures for which an accuracy is asked, and their errors.
+    pub fn asked(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let pairs = PROMISED.iter().zip(self.errors).filter(|(promised, _)| promised.is_asked());
+        pairs.map(|(promised, error)| (promised.measure.name(), error))
+    }
+
+    /// These errors as a text, as in `t_90_z_rim 5.5 %`.
+    pub fn errors_text(&self) -> String {
+        let text = |(name, error): (&str, f64)| {
             if error.is_finite() {
                 format!("{name} {:.1} %", 100.0 * error)
             } else {
                 format!("{name} not known")
             }
         };
-        judged.map(text).collect::<Vec<_>>().join(", ")
+        self.asked().map(text).collect::<Vec<_>>().join(", ")
     }
 }
 

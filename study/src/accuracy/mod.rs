@@ -21,7 +21,6 @@ pub use entries::Entries;
 pub use entry::{Entry, Limit, Method, RelativeError};
 pub use features::{Coverage, Features};
 pub use promised::{
-    NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED, Promised, Tolerances, all_but_peak_vz,
-    error_column, is_error_column,
+    NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED, Promised, error_column, is_error_column,
 };
 pub use table::MeshErrors;

@@ -37,16 +37,12 @@ pub const NO_ERROR_REASON: &str = "no_error_reason";
 /// Meaning of that column, one line.
 pub const NO_ERROR_REASON_MEANING: &str = "why the table of mesh errors has none for this row: what its scene has that the runs of the table have not, or a model other than film; values extrapolated from three meshes have an error all the same";
 
-/// Largest relative error of each promised measure; `None` where it does not matter.
-pub type Tolerances = [Option<f64>; PROMISED.len()];
-
-/// What one number asks for: it is the tolerance of every promised measure but `peak_vz`, which scatters by more from
-/// seed to seed.
-pub fn all_but_peak_vz(tolerance: Option<f64>) -> Tolerances {
-    PROMISED.map(|promised| tolerance.filter(|_| promised.measure != ColumnId::PeakVz))
-}
-
 impl Promised {
+    /// Whether an accuracy that is asked for holds for it: `peak_vz` scatters by more from seed to seed.
+    pub fn is_asked(&self) -> bool {
+        self.measure != ColumnId::PeakVz
+    }
+
     /// Whether it is the state at the end of a run: it has a mesh error only where the capsule is deployed.
     pub fn is_at_end(&self) -> bool {
         matches!(self.measure, ColumnId::FinalZRim | ColumnId::FinalVolume)

@@ -282,16 +282,14 @@ fn a_model_that_cannot_compute_a_scene_keeps_nothing() {
     let meshless = |model| Entry { model, meshes: Vec::new(), ..entries[0].clone() };
     let more = [ModelKind::Piston, ModelKind::Storeys].map(meshless);
     entries.extend(more);
-    for entry in &mut entries {
-        PROMISED[0].measure.name().clone_into(&mut entry.measure);
-    }
-    table.errors = entries.into();
+    let of_all = entries.iter().flat_map(|entry| {
+        PROMISED.map(|of| Entry { measure: of.measure.name().to_owned(), ..entry.clone() })
+    });
+    table.errors = of_all.collect::<Vec<Entry>>().into();
     let choices = choices(&table, &[(&held, features(&held))]).unwrap();
-    let mut tolerances = [None; PROMISED.len()];
-    tolerances[0] = Some(0.5);
     let keeps = |model: ModelKind| {
         let choice = choices.iter().find(|choice| choice.method.model == model).unwrap();
-        (choice.keeps(&tolerances), choice.refusal.clone().unwrap_or_default())
+        (choice.keeps(0.5), choice.refusal.clone().unwrap_or_default())
     };
     assert_eq!(keeps(ModelKind::Film), (true, String::new()));
     for model in [ModelKind::Piston, ModelKind::Storeys] {

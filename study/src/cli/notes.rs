@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use billow_solver::integrators::{self, Refusal};
 use billow_solver::scene::ModelKind;
 
-use crate::accuracy::{MeshErrors, Method, all_but_peak_vz, choice};
+use crate::accuracy::{MeshErrors, Method, choice};
 use crate::input::keys::numerical::{MESH_PARAMETER, SEED};
 use crate::input::keys::{MODELS, Model};
 use crate::input::value::{Value, brief_number};
@@ -87,7 +87,7 @@ fn of_meshes(study: &Study) -> Option<String> {
     Some(match choice(MeshErrors::shipped(), method, &scenes) {
         Ok(choice) => format!(
             "note: solver.meshes gives the errors of {name}: {}; cost {:.1} % of n 24",
-            choice.errors_text(&all_but_peak_vz(Some(0.0))),
+            choice.errors_text(),
             100.0 * choice.cost
         ),
         Err(gap) if study.meshes().len() == 2 => {

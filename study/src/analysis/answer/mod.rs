@@ -5,19 +5,20 @@
 use std::collections::BTreeSet;
 
 use billow_solver::output::measures::Verdict;
+use serde::{Serialize, Serializer};
 
 use crate::accuracy::error_column;
 use crate::analysis::compare;
 use crate::analysis::ranking::{DEFAULT_MEASURES, Ranking, RankingInput};
 use crate::analysis::replicates::{Condensed, fixed, point_key, source};
 use crate::input::units::DisplayUnit;
-use crate::input::value::Value;
+use crate::input::value::{Value, json_value};
 use crate::job::Status;
 use crate::job::point::Point;
 use crate::job::result_limit::ResultLimit;
 use crate::job::row::{ColumnId, Counts, HEADLINE};
 use crate::store::stored::Stored;
-use crate::store::table::Table;
+use crate::store::table::{Column, Table};
 use crate::study::{Study, Zipped};
 
 mod points;
@@ -26,7 +27,7 @@ mod searches;
 mod trust;
 
 pub use points::{PointCounts, VerdictSensitivity};
-pub use safety::{PointMargin, SafeCounts, Safety};
+pub use safety::{SafeCounts, Safety};
 pub use searches::{Found, Searches};
 pub use trust::Trust;
 
@@ -64,20 +65,24 @@ pub struct Answer {
 }
 
 /// The job with the smallest or largest value of a measure.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Extreme {
     /// Id of the job.
     pub job: String,
     /// Its parameters, and the units in which they are shown.
+    #[serde(serialize_with = "parameters")]
     pub parameters: Vec<(String, Value, DisplayUnit)>,
-    /// Value of the measure, SI.
+    /// The measure; of a margin the measure that it is of.
+    pub measure: String,
+    /// Value of the measure, or the margin, SI.
     pub value: f64,
-    /// Unit in which the measure is shown.
+    /// Unit in which the value is shown.
+    #[serde(skip)]
     pub shown: DisplayUnit,
     /// Number of other jobs with the same value, up to rounding.
     pub others: usize,
     /// Number of other points, not counting replicates, with a job whose value is within the larger of both mesh errors.
-    pub within_error: usize,
+    pub within_mesh_error: usize,
     /// Whether the value is extrapolated from several meshes.
     pub extrapolated: bool,
     /// Whether the job can be trusted.
@@ -181,6 +186,26 @@ fn comparison(
     Ok(ranking)
 }
 
+/// The parameters of a row, and the units in which they are shown.
+fn parameters_of(table: &Table, row: usize) -> Vec<(String, Value, DisplayUnit)> {
+    let of =
+        |column: &Column| (column.name.clone(), column.cells[row].clone(), column.shown.clone());
+    table.parameters().map(of).collect()
+}
+
+/// Writes parameters as an object, SI.
+fn parameters<S: Serializer>(
+    parameters: &[(String, Value, DisplayUnit)],
+    to: S,
+) -> Result<S::Ok, S::Error> {
+    to.collect_map(parameters.iter().map(|(name, value, _)| (name, json_value(value))))
+}
+
+/// Writes names with their numbers as an object.
+fn named<S: Serializer>(numbers: &[(String, usize)], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_map(numbers.iter().map(|(name, number)| (name, number)))
+}
+
 /// The first done job with the best value of a measure.
 fn extreme(
     table: &Table,
@@ -213,16 +238,14 @@ fn extreme(
     let equal = rows.iter().filter(|row| within(row)).map(|row| point_key(&fixed, *row));
     let mut equal: BTreeSet<Vec<String>> = equal.collect();
     equal.remove(&point_key(&fixed, row));
-    let parameters = table.parameters();
     Some(Extreme {
         job: table.column("job")?.cells[row].to_string(),
-        parameters: parameters
-            .map(|column| (column.name.clone(), column.cells[row].clone(), column.shown.clone()))
-            .collect(),
+        parameters: parameters_of(table, row),
+        measure: measure.name().to_owned(),
         value,
         shown: column.shown.clone(),
         others,
-        within_error: equal.len(),
+        within_mesh_error: equal.len(),
         extrapolated: column.name != raw.name,
         trusted: table.is_trusted(row),
     })

@@ -99,8 +99,8 @@ fn a_point_counts_as_deployed_or_safe_if_all_its_runs_are() {
     assert_eq!(safety.missed, [("peak_vz".to_owned(), 1), ("verdict".to_owned(), 1)]);
     // The nearest safe point is late at mass 1; its worst run has 20.02 m/s.
     let nearest = safety.nearest.unwrap();
-    assert_eq!(nearest.point.parameters[0].1, Value::Text("late".to_owned()));
-    assert!((nearest.point.value - (25.0 - 20.02) / 25.0).abs() < 1e-12);
+    assert_eq!(nearest.parameters[0].1, Value::Text("late".to_owned()));
+    assert!((nearest.value - (25.0 - 20.02) / 25.0).abs() < 1e-12);
 }
 
 #[test]

@@ -2,13 +2,16 @@
 
 use std::collections::BTreeMap;
 
+use serde::Serialize;
+
+use super::named;
 use crate::analysis::replicates::Condensed;
 use crate::input::value::Value;
 use crate::job::row::DerivedColumn;
 use crate::store::table::Table;
 
 /// How the points of a study with replicates end.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct PointCounts {
     /// Number of points with a job.
     pub points: usize,
@@ -19,6 +22,7 @@ pub struct PointCounts {
     /// Points of which no run deploys.
     pub never: usize,
     /// Other points: a run failed, has not ended or has no verdict.
+    #[serde(rename = "not_decided")]
     pub undecided: usize,
     /// The parameters that repeat a point.
     pub replicates: Vec<String>,
@@ -43,13 +47,14 @@ impl PointCounts {
 }
 
 /// Points whose verdict depends on a numerical choice.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct VerdictSensitivity {
     /// Number of such points.
     pub points: usize,
     /// Number of points with a verdict.
     pub of: usize,
     /// The choices, with their numbers of points.
+    #[serde(serialize_with = "named")]
     pub choices: Vec<(String, usize)>,
 }
 

@@ -1,6 +1,8 @@
 //! Which points are safe: all limits of the study met in all their runs.
 
-use super::Extreme;
+use serde::Serialize;
+
+use super::{Extreme, named, parameters_of};
 use crate::analysis::replicates::Condensed;
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
@@ -8,20 +10,23 @@ use crate::job::result_limit::ResultLimit;
 use crate::store::table::Table;
 
 /// The points by the limits of the study.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Safety {
     /// The limits, as in `peak_vz < 25 m/s`.
     pub limits: Vec<String>,
     /// The numbers of points.
+    #[serde(flatten)]
     pub counts: SafeCounts,
-    /// The safe point nearest to a limit; without one the point that misses its limits least.
-    pub nearest: Option<PointMargin>,
+    /// The run with the smallest margin of the safe point nearest to a limit; without one of the point that misses its
+    /// limits least. Its value is the margin.
+    pub nearest: Option<Extreme>,
     /// For each missed limit its measure and the number of points that miss it, the most frequent first.
+    #[serde(serialize_with = "named")]
     pub missed: Vec<(String, usize)>,
 }
 
 /// Numbers of points with a job.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct SafeCounts {
     /// All.
     pub points: usize,
@@ -31,15 +36,6 @@ pub struct SafeCounts {
     pub mixed: usize,
     /// No limit says more: a run failed, has not ended, or lacks a measure.
     pub not_judged: usize,
-}
-
-/// A point and its smallest margin.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PointMargin {
-    /// The run with the smallest margin, and the parameters of the point; `value` is the margin.
-    pub point: Extreme,
-    /// The measure with this margin.
-    pub measure: String,
 }
 
 impl Safety {
@@ -67,9 +63,8 @@ impl Safety {
         missed.sort_by_key(|(_, points)| std::cmp::Reverse(*points));
         let all: Vec<usize> = points.feasible().collect();
         let safe = |point: &usize| points.is_safe(*point) == Some(true);
-        let mut margins =
-            all.iter().copied().filter(safe).filter_map(|p| margin(table, &points, p));
-        let nearest = margins.next().map(|first| margins.fold(first, smaller));
+        let margins = all.iter().copied().filter(safe).filter_map(|p| margin(table, &points, p));
+        let nearest = margins.reduce(|a, b| if b.value < a.value { b } else { a });
         Some(Self {
             limits: limits.iter().map(ToString::to_string).collect(),
             counts: SafeCounts::of(&points, &all),
@@ -96,33 +91,24 @@ impl SafeCounts {
 }
 
 /// The point with the largest of the smallest margins; of points with a run that cannot be judged, none.
-fn safest(table: &Table, points: &Condensed, some: &[usize]) -> Option<PointMargin> {
+fn safest(table: &Table, points: &Condensed, some: &[usize]) -> Option<Extreme> {
     let judged = some.iter().copied().filter(|point| points.is_safe(*point).is_some());
-    let mut margins = judged.filter_map(|point| margin(table, points, point));
-    let first = margins.next()?;
-    let larger = |a: PointMargin, b: PointMargin| if b.point.value > a.point.value { b } else { a };
-    Some(margins.fold(first, larger))
-}
-
-fn smaller(a: PointMargin, b: PointMargin) -> PointMargin {
-    if b.point.value < a.point.value { b } else { a }
+    let margins = judged.filter_map(|point| margin(table, points, point));
+    margins.reduce(|a, b| if b.value > a.value { b } else { a })
 }
 
 /// The smallest margin of a point.
-fn margin(table: &Table, points: &Condensed, point: usize) -> Option<PointMargin> {
+fn margin(table: &Table, points: &Condensed, point: usize) -> Option<Extreme> {
     let (value, measure, row) = points.runs[point].worst_margin(table)?;
-    let parameters = points.table.parameters();
-    let parameters = parameters
-        .map(|column| (column.name.clone(), column.cells[point].clone(), column.shown.clone()));
-    let point = Extreme {
+    Some(Extreme {
         job: table.column("job")?.cells[row].to_string(),
-        parameters: parameters.collect(),
+        parameters: parameters_of(&points.table, point),
+        measure,
         value,
         shown: DisplayUnit::si("1"),
         others: 0,
-        within_error: 0,
+        within_mesh_error: 0,
         extrapolated: false,
         trusted: table.is_trusted(row),
-    };
-    Some(PointMargin { point, measure })
+    })
 }

@@ -23,6 +23,8 @@ pub struct Searches {
     pub criterion: String,
     /// Number of runs of each value.
     pub replicates: usize,
+    /// The other parameters, with one cell per search.
+    pub parameters: Vec<Column>,
     /// One entry per search, in plan order.
     pub found: Vec<Found>,
 }
@@ -32,8 +34,6 @@ pub struct Searches {
 pub struct Found {
     /// Values, runs, outcome.
     pub border: Border,
-    /// The other parameters, and the units in which they are shown.
-    pub parameters: Vec<(String, Value, DisplayUnit)>,
     /// The measure that decides: that of the smallest margin in most runs beyond the border.
     pub limit: Option<String>,
 }
@@ -43,16 +43,15 @@ impl Searches {
     pub fn of(stored: &Stored<'_>, table: &Table) -> Option<Self> {
         let (parameter, criterion) = stored.study.searched()?;
         let limits = stored.study.result_limits();
-        let shown = |name: &str| {
-            let column = table.parameters().find(|column| column.name == name);
-            column.map_or_else(|| DisplayUnit::si(""), |column| column.shown.clone())
-        };
-        let found = stored.borders().into_iter().map(|border| Found {
-            parameters: border
-                .parameters
-                .iter()
-                .map(|(name, value)| (name.clone(), value.clone(), shown(name)))
-                .collect(),
+        let column = |name: &str| table.parameters().find(|column| column.name == name);
+        let borders = stored.borders();
+        let names = borders.first().map_or(&[][..], |border| border.parameters.as_slice());
+        let parameters = names.iter().enumerate().filter_map(|(index, (name, _))| {
+            let cells = borders.iter().map(|border| border.parameters[index].1.clone());
+            Some(column(name)?.like(name, cells.collect()))
+        });
+        let parameters = parameters.collect();
+        let found = borders.into_iter().map(|border| Found {
             limit: match criterion {
                 Criterion::Deployed => Some("verdict".to_owned()),
                 Criterion::Limit(index) => limits.get(index).map(|l| l.measure.name().to_owned()),
@@ -63,16 +62,17 @@ impl Searches {
         Some(Self {
             parameter: parameter.to_owned(),
             unit: stored.study.unit(parameter).to_owned(),
-            shown: shown(parameter),
+            shown: column(parameter)
+                .map_or_else(|| DisplayUnit::si(""), |column| column.shown.clone()),
             criterion: criterion.text(limits),
             replicates: stored.study.replicate_count(),
+            parameters,
             found: found.collect(),
         })
     }
 
-    /// The searches as a table, one row per search: an empty column, the parameters, the status, then what was found.
-    /// `table` is that of the study.
-    pub fn table(&self, table: &Table) -> Table {
+    /// The searches as a table, one row per search: its number, the parameters, the status, then what was found.
+    pub fn table(&self) -> Table {
         let column = |name: &str, cell_type, of: &dyn Fn(&Found) -> Value| {
             Column::plain(name, cell_type, self.found.iter().map(of).collect())
         };
@@ -87,14 +87,9 @@ impl Searches {
             SearchResult::Border { low, high, .. } => Some([low, high]),
             _ => None,
         };
-        let parameters = self.found.first().map_or(&[][..], |first| first.parameters.as_slice());
-        let parameters = parameters.iter().enumerate().filter_map(|(index, (name, ..))| {
-            let known = table.parameters().find(|column| column.name == *name)?;
-            let cells = self.found.iter().map(|found| found.parameters[index].1.clone());
-            Some(known.like(name, cells.collect()))
-        });
-        let mut columns = vec![column("search", CellType::Text, &|_| Value::Null)];
-        columns.extend(parameters);
+        let numbers = (1..=self.found.len()).map(number).collect();
+        let mut columns = vec![Column::plain("search", CellType::Integer, numbers)];
+        columns.extend(self.parameters.iter().cloned());
         // A column with this name ends the parameters of a table.
         columns.push(column(ColumnId::Status.name(), CellType::Text, &|found| {
             let open = found.border.outcome == SearchResult::Open;
@@ -143,7 +138,7 @@ impl Searches {
 
 impl Found {
     /// Name of the outcome.
-    pub fn outcome(&self) -> &'static str {
+    fn outcome(&self) -> &'static str {
         match self.border.outcome {
             SearchResult::Open => "open",
             SearchResult::Border { .. } => "border",
@@ -174,19 +169,13 @@ impl Found {
         self.undecided(replicates).iter().filter(|value| low < **value && **value < high).count()
     }
 
-    /// The smallest and the largest value.
-    pub fn range(&self) -> Option<[f64; 2]> {
-        let levels = &self.border.levels;
-        Some([levels.first()?.value, levels.last()?.value])
-    }
-
     /// Number of runs of all values that are counted so.
     pub fn sum(&self, of: fn(&Level) -> usize) -> usize {
         self.border.levels.iter().map(of).sum()
     }
 
     /// Whether the criterion is met below the border, or at every value.
-    pub fn met_below(&self) -> Option<bool> {
+    fn met_below(&self) -> Option<bool> {
         match self.border.outcome {
             SearchResult::Border { met_below: met, .. } | SearchResult::NoChange { met } => {
                 Some(met)

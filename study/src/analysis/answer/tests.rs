@@ -259,6 +259,6 @@ fn points_within_the_mesh_error_of_the_best_one_are_counted_without_replicates()
     };
     let most = |replicates: &[String]| Answer::of_jobs(&table, replicates).most_energy.unwrap();
     let energy = most(&["seed".to_owned()]);
-    assert_eq!((energy.job.as_str(), energy.others, energy.within_error), ("a", 0, 1));
-    assert_eq!(most(&[]).within_error, 3, "without replicates every run is a point");
+    assert_eq!((energy.job.as_str(), energy.others, energy.within_mesh_error), ("a", 0, 1));
+    assert_eq!(most(&[]).within_mesh_error, 3, "without replicates every run is a point");
 }

@@ -1,5 +1,7 @@
 //! How far the results of a study can be trusted.
 
+use serde::Serialize;
+
 use crate::analysis::compare;
 use crate::analysis::statistics::Spread;
 use crate::input::value::Value;
@@ -8,7 +10,7 @@ use crate::job::row::ColumnId;
 use crate::store::table::Table;
 
 /// The audit over all done jobs.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Trust {
     /// Number of done jobs.
     pub jobs: usize,

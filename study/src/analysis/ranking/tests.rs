@@ -161,5 +161,5 @@ fn of_two_points_that_are_not_safe_the_one_with_fewer_runs_missed_is_better() {
         assert_eq!(order(&ranking), ["b", "a"]);
         let missed: Vec<_> = ranking.candidates.iter().map(|c| c.missed).collect();
         assert_eq!(missed, [Proportion { met: 1, of: 5 }, Proportion { met: 5, of: 5 }]);
-        }
+    }
 }

@@ -1,8 +1,9 @@
 //! Lines of the answer on the searches of a border.
 
-use crate::analysis::answer::{Found, Searches};
+use crate::analysis::answer::Searches;
 use crate::cli::print::count;
 use crate::input::value::Value;
+use crate::store::table::Column;
 use crate::study::SearchResult;
 
 /// Most searches that the answer names.
@@ -11,7 +12,7 @@ const MAX_SEARCHES: usize = 12;
 /// One line per search.
 pub(super) fn lines(searches: &Searches) -> Vec<String> {
     let mut lines: Vec<String> =
-        searches.found.iter().take(MAX_SEARCHES).map(|found| line(searches, found)).collect();
+        (0..searches.found.len().min(MAX_SEARCHES)).map(|index| line(searches, index)).collect();
     let more = searches.found.len() - lines.len();
     if more > 0 {
         let open = searches.found.iter().filter(|found| found.border.outcome == SearchResult::Open);
@@ -24,7 +25,8 @@ pub(super) fn lines(searches: &Searches) -> Vec<String> {
     lines
 }
 
-fn line(searches: &Searches, found: &Found) -> String {
+fn line(searches: &Searches, index: usize) -> String {
+    let found = &searches.found[index];
     let (name, what) = (&searches.parameter, &searches.criterion);
     let interval = |[low, high]: [f64; 2]| {
         let (unit, high) = (&searches.shown, Value::Number(high));
@@ -64,17 +66,12 @@ fn line(searches: &Searches, found: &Found) -> String {
         }
         SearchResult::Undecided => format!("{name}: {what}: not decided at any value"),
     };
-    let varies = |index: &usize| {
-        let mut values = searches.found.iter().map(|other| &other.parameters[*index].1);
-        let first = &found.parameters[*index].1;
-        values.any(|value| value != first)
-    };
-    let parameters: Vec<String> = (0..found.parameters.len())
+    let varies = |column: &&Column| column.cells.iter().any(|cell| *cell != column.cells[0]);
+    let parameters: Vec<String> = searches
+        .parameters
+        .iter()
         .filter(varies)
-        .map(|index| {
-            let (name, value, unit) = &found.parameters[index];
-            format!("{name}={}", unit.quantity(value))
-        })
+        .map(|column| format!("{}={}", column.name, column.shown.quantity(&column.cells[index])))
         .collect();
     let parameters =
         if parameters.is_empty() { String::new() } else { format!(" ({})", parameters.join(", ")) };

@@ -13,7 +13,7 @@ use crate::analysis::ranking::Ranking;
 use crate::input::units::{self, Dimension};
 use crate::input::value::{Value, brief_number};
 use crate::job::Status;
-use crate::job::row::{ColumnId, HEADLINE};
+use crate::job::row::ColumnId;
 use crate::store::table::Column;
 
 mod border;
@@ -77,19 +77,17 @@ fn print_topic(topic: &str, texts: &[String], out: &mut dyn Write) -> io::Result
 /// The fastest job, and the jobs with the highest velocity and kinetic energy.
 fn print_extremes(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     if let Some(fastest) = &answer.fastest {
-        let value = value_text(HEADLINE[0], fastest);
-        writeln!(out, "  fastest  {value}: {}", job_text(fastest))?;
+        writeln!(out, "  fastest  {}: {}", value_text(fastest), job_text(fastest))?;
     }
     let Some(energy) = &answer.most_energy else { return Ok(()) };
-    let mut value = value_text(ColumnId::PeakKineticEnergy, energy);
+    let mut value = value_text(energy);
     let speed = answer.hardest.as_ref();
     if let Some(same) = speed.filter(|speed| speed.job == energy.job) {
-        let _ = write!(value, ", {}", value_text(ColumnId::PeakVz, same));
+        let _ = write!(value, ", {}", value_text(same));
     }
     writeln!(out, "  hardest  {value}: {}", job_text(energy))?;
     if let Some(other) = speed.filter(|speed| speed.job != energy.job) {
-        let value = value_text(ColumnId::PeakVz, other);
-        writeln!(out, "           {value}: {}", job_text(other))?;
+        writeln!(out, "           {}: {}", value_text(other), job_text(other))?;
     }
     Ok(())
 }
@@ -168,9 +166,9 @@ fn deployed(answer: &Answer) -> String {
 }
 
 /// A measure with its value, and what is to be known about it.
-fn value_text(measure: ColumnId, extreme: &Extreme) -> String {
+fn value_text(extreme: &Extreme) -> String {
     let mut notes = Vec::new();
-    if measure == ColumnId::PeakVz {
+    if extreme.measure == ColumnId::PeakVz.name() {
         notes.push("noisy".to_owned());
     }
     if extreme.extrapolated {
@@ -179,12 +177,12 @@ fn value_text(measure: ColumnId, extreme: &Extreme) -> String {
     if !extreme.trusted {
         notes.push("not trusted".to_owned());
     }
-    if extreme.within_error > 0 {
-        let points = count(extreme.within_error, "other point");
+    if extreme.within_mesh_error > 0 {
+        let points = count(extreme.within_mesh_error, "other point");
         notes.push(format!("{points} within the mesh error"));
     }
     let notes = if notes.is_empty() { String::new() } else { format!(" ({})", notes.join(", ")) };
-    format!("{} {}{notes}", measure.name(), extreme.shown.brief(extreme.value))
+    format!("{} {}{notes}", extreme.measure, extreme.shown.brief(extreme.value))
 }
 
 fn job_text(extreme: &Extreme) -> String {

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use super::job_text;
-use crate::analysis::answer::{PointCounts, PointMargin, SafeCounts, Safety, VerdictSensitivity};
+use crate::analysis::answer::{PointCounts, SafeCounts, Safety, VerdictSensitivity};
 use crate::cli::print::count;
 use crate::input::value::brief_number;
 use crate::job::Status;
@@ -70,7 +70,8 @@ pub(super) fn safe(safety: &Safety) -> String {
     if let Some(nearest) = &safety.nearest {
         let what =
             if safety.counts.safe > 0 { "nearest to a limit" } else { "least beyond a limit" };
-        let _ = write!(all, "; {what}: {}", margin(nearest));
+        let (margin, job) = (brief_number(nearest.value), job_text(nearest));
+        let _ = write!(all, "; {what}: smallest_margin {margin} ({}) at {job}", nearest.measure);
     }
     all
 }
@@ -84,14 +85,4 @@ fn counts(counts: &SafeCounts, noun: &str) -> String {
         }
     }
     text
-}
-
-/// The smallest margin of a point, its measure, its job.
-fn margin(margin: &PointMargin) -> String {
-    format!(
-        "smallest_margin {} ({}) at {}",
-        brief_number(margin.point.value),
-        margin.measure,
-        job_text(&margin.point)
-    )
 }

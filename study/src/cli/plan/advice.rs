@@ -2,7 +2,7 @@
 
 use crate::accuracy::choice::cost;
 use crate::accuracy::features::STEP;
-use crate::accuracy::{Choice, MeshErrors, Method, PROMISED, Tolerances, all_but_peak_vz, choices};
+use crate::accuracy::{Choice, MeshErrors, Method, choices};
 use crate::input::fraction::{RELATIVE_ERROR, relative_error};
 use crate::input::keys;
 use crate::input::value::brief_number;
@@ -20,7 +20,6 @@ pub(super) fn advice(study: &Study, accuracy: Option<&str>) -> Result<Vec<String
     let error = relative_error(text).ok_or_else(|| {
         Error::invalid_option("--accuracy", text, "not a relative error", RELATIVE_ERROR, "")
     })?;
-    let tolerances = all_but_peak_vz(Some(error));
     let table = MeshErrors::shipped();
     let scenes: Vec<_> = study.points().iter().filter_map(features).collect();
     let choices = match choices(table, &scenes) {
@@ -33,7 +32,7 @@ pub(super) fn advice(study: &Study, accuracy: Option<&str>) -> Result<Vec<String
         Ok(choices) => choices,
         Err(gap) => return Ok(vec![format!("advice: none: {gap}; {}", hint(study))]),
     };
-    let mut lines = vec![recommendation(study, table, &choices, &tolerances)];
+    let mut lines = vec![recommendation(study, table, &choices, error)];
     let mut refused: Vec<(&'static str, &str)> = choices
         .iter()
         .filter_map(|choice| {
@@ -47,27 +46,17 @@ pub(super) fn advice(study: &Study, accuracy: Option<&str>) -> Result<Vec<String
     Ok(lines)
 }
 
-/// The cheapest method that keeps the tolerances, with its errors, its saving and how to set it.
-fn recommendation(
-    study: &Study,
-    table: &MeshErrors,
-    choices: &[Choice],
-    tolerances: &Tolerances,
-) -> String {
-    let asked = PROMISED.iter().zip(tolerances).filter_map(|(promised, tolerance)| {
-        let percent = brief_number(100.0 * (*tolerance)?);
-        Some(format!("{} {percent} %", promised.measure.name()))
-    });
-    let asked = asked.collect::<Vec<_>>().join(", ");
-    let Some(choice) = choices.iter().find(|choice| choice.keeps(tolerances)) else {
-        let keys = PROMISED.iter().enumerate().filter(|(index, _)| tolerances[*index].is_some());
-        let least = keys.map(|(index, promised)| {
-            let possible = choices.iter().filter(|choice| choice.refusal.is_none());
-            let least = possible.map(|choice| choice.errors[index]).fold(f64::INFINITY, f64::min);
-            format!("{} {:.1} %", promised.measure.name(), 100.0 * least)
+/// The cheapest method that keeps an error, with its errors, its saving and how to set it.
+fn recommendation(study: &Study, table: &MeshErrors, choices: &[Choice], error: f64) -> String {
+    let asked = format!("{} % of every measure but peak_vz", brief_number(100.0 * error));
+    let Some(choice) = choices.iter().find(|choice| choice.keeps(error)) else {
+        let possible = choices.iter().filter(|choice| choice.refusal.is_none());
+        let largest = |choice: &Choice| choice.asked().map(|(_, error)| error).fold(0.0, f64::max);
+        let best = possible.min_by(|a, b| largest(a).total_cmp(&largest(b)));
+        let best = best.map_or_else(String::new, |best| {
+            format!("; {} has the smallest errors: {}", best.method.name(), best.errors_text())
         });
-        let least = least.collect::<Vec<_>>().join(", ");
-        return format!("advice: none: no method keeps {asked}; the smallest errors are {least}");
+        return format!("advice: none: no method keeps {asked}{best}");
     };
     let method = &choice.method;
     let locks = if method.meshes.is_empty() {
@@ -78,7 +67,7 @@ fn recommendation(
     format!(
         "advice: {} keeps {asked} in 9 of 10 runs ({}; {}): {}; at solver.cfl {STEP} alone{locks}",
         method.name(),
-        choice.errors_text(tolerances),
+        choice.errors_text(),
         saving(study, table, choice.cost),
         setting(method, study),
     )

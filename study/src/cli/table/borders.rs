@@ -25,7 +25,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         let allowed = "an axis of the grid as {\"bisect\": [low, high], \"on\": \"verdict\", \"safe\" or a limit}";
         return Err(Error::invalid_option("--borders", name, "searches no border", allowed, ""));
     };
-    let mut borders = searches.table(&table);
+    let mut borders = searches.table();
     let found = borders.columns.len();
     let condition = args.condition.as_deref();
     results::add_keys(&stored.study, &mut borders, &stored.units, &[], condition);
