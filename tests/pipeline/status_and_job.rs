@@ -83,17 +83,18 @@ fn job_explains_a_verdict_with_its_numbers() {
     for row in folder.rows("results/grid").iter().filter(|row| row["status"] == "done") {
         let id = row["job"].as_str().unwrap();
         let explained = json_of(&folder, &["job", &id[..7]]);
-        for column in ["job", "status", "verdict", "near_threshold", "ledger_residual", "passages"]
-        {
+        for column in [
+            "job",
+            "status",
+            "verdict",
+            "near_threshold",
+            "volume_ratio",
+            "deployed_volume_threshold",
+            "ledger_residual",
+            "passages",
+        ] {
             assert_eq!(explained[column], row[column], "{column}");
         }
-        let check = &explained["checks"][0];
-        assert_eq!(
-            (&check["measure"], &check["value"]),
-            (&json!("volume_ratio"), &row["volume_ratio"])
-        );
-        let (value, least) = (check["value"].as_f64().unwrap(), check["least"].as_f64().unwrap());
-        assert_eq!(check["margin"], json!(value / least - 1.0));
         let said = folder.stdout(&["job", id]);
         assert!(said.contains("done, deployed") && said.contains("height_ratio"), "{said}");
         assert!(said.contains("≤ 0.01") && said.contains("counted by this model"), "{said}");
@@ -179,18 +180,12 @@ fn job_prints_the_stored_row_scene_and_history() {
     let id = row["job"].as_str().unwrap();
     let shown = json_of(&folder, &["job", id, "--all"]);
     let shown = shown.as_array().unwrap();
-    let of = |group: &str, name: &str| {
-        shown.iter().find(|row| row["group"] == group && row["name"] == name)
-    };
+    let of = |name: &str| shown.iter().find(|row| row["name"] == name);
     for (column, value) in row.as_object().unwrap() {
-        let groups =
-            ["job", "parameters", "outcome", "measures", "audit", "pattern", "cost", "provenance"];
-        let found = groups.iter().find_map(|group| of(group, column));
-        assert_eq!(found.map_or(&Value::Null, |row| &row["value"]), value, "{column}");
+        assert_eq!(of(column).map_or(&Value::Null, |row| &row["value"]), value, "{column}");
     }
-    assert_eq!(of("parameters", "mass_flow_rate").unwrap()["unit"], "kg/s");
-    assert_eq!(of("measures", "peak_vz").unwrap()["unit"], "m/s");
-    assert!(of("scene", "film.youngs_modulus").unwrap()["value"].as_f64().unwrap() > 1e9);
+    assert_eq!(of("mass_flow_rate").unwrap()["unit"], "kg/s");
+    assert_eq!(of("peak_vz").unwrap()["unit"], "m/s");
 
     let scene: Value = serde_json::from_str(&folder.stdout(&["job", id, "--scene"])).unwrap();
     assert_eq!(scene["design"]["N"], row["N"]);

@@ -6,7 +6,7 @@ use serde_json::json;
 
 use crate::input::value::{Value, brief_number, json_value};
 use crate::job::result_limit::{Condition, Judged, ResultLimit, Safety};
-use crate::job::row::{Cells, ColumnGroup, DerivedColumn};
+use crate::job::row::Cells;
 use crate::store::stored::Stored;
 
 /// One limit and the value of a job.
@@ -80,29 +80,4 @@ pub(super) fn keys(stored: &Stored<'_>, cells: &Cells) -> [(&'static str, serde_
     };
     let limits: Vec<_> = judged(stored, cells).iter().map(limit).collect();
     [("safe", safety(stored, cells).map(|known| known.safe).into()), ("limits", limits.into())]
-}
-
-/// The rows of `billow job --all`: group, name, value, unit and meaning, as the table of the study has them.
-pub(super) fn rows(stored: &Stored<'_>, cells: &Cells) -> Vec<Vec<Value>> {
-    let text = |text: &str| Value::Text(text.to_owned());
-    let group = ColumnGroup::Outcome.name();
-    let mut rows = Vec::new();
-    if let Some(known) = safety(stored, cells) {
-        let of = &stored.study.result_limits()[known.limit];
-        let values = [
-            (DerivedColumn::Safe, Value::Bool(known.safe)),
-            (DerivedColumn::SmallestMargin, Value::Number(known.smallest_margin)),
-            (DerivedColumn::SmallestMarginOf, text(of.measure.name())),
-        ];
-        rows.extend(values.map(|(column, value)| {
-            let column = column.row();
-            vec![text(group), text(column.name), value, text(column.unit), text(column.meaning)]
-        }));
-    }
-    rows.extend(judged(stored, cells).iter().filter_map(|one| {
-        let margin = Value::Number(one.judged?.margin);
-        let (name, meaning) = (one.limit.column_name(), one.limit.margin_meaning());
-        Some(vec![text(group), text(&name), margin, text("1"), text(&meaning)])
-    }));
-    rows
 }

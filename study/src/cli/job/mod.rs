@@ -33,7 +33,7 @@ pub struct Args {
     pub job: String,
     #[command(flatten)]
     study: StudyArgs,
-    /// Print everything stored: parameters, row of the table, events, scene.
+    /// Print its row of the table, one line per quantity, and its events.
     #[arg(long, conflicts_with_all = ["scene", "history"])]
     pub all: bool,
     /// Print the scene, as JSON.
@@ -82,7 +82,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         history_table::print(&job, args, format, out)
     } else if args.all {
         let rows = quantities::rows(&job, format == Format::Table);
-        print_rows(&["group", "name", "value", "unit", "meaning"], &rows, format, out)
+        print_rows(&["name", "value", "unit", "meaning"], &rows, format, out)
     } else {
         job.explain(format, out)
     }
@@ -170,7 +170,7 @@ impl Inspected {
         suggestions(&self.cells, &point.job.scene.solver).into_iter().map(text).collect()
     }
 
-    /// The explanation as JSON: parameters, checks, limits, the cells of the row, and the lines as `why`.
+    /// The explanation as JSON: parameters, limits, the cells of the row, and the lines as `why`.
     fn json(&self, lines: &[TopicLine]) -> serde_json::Value {
         let Self { stored, id, cells } = self;
         let point = stored.point(id);
@@ -183,8 +183,6 @@ impl Inspected {
         let mut keys = json!({
             "job": id.as_str(),
             "parameters": parameters,
-            "ledger_bound": MAX_LEDGER_RESIDUAL,
-            "checks": verdict::checks(cells),
             "why": why,
             "suggestions": self.suggestions(),
         });

@@ -1,7 +1,6 @@
 //! The numbers behind a verdict: ratios of the last tenth of the run against their thresholds.
 
 use billow_solver::output::measures::Verdict;
-use serde_json::json;
 
 use super::{Inspected, percent};
 use crate::cli::print::TopicLine;
@@ -31,18 +30,6 @@ fn check(cells: &Cells, [measure, threshold]: [ColumnId; 2]) -> Option<[f64; 3]>
 /// Whether a small change of the ratios would change the verdict.
 pub(super) fn is_near_threshold(cells: &Cells) -> bool {
     *cells.get(ColumnId::NearThreshold) == Value::Bool(true)
-}
-
-/// The checks as JSON.
-pub(super) fn checks(cells: &Cells) -> Vec<serde_json::Value> {
-    let json = |columns: [ColumnId; 2]| {
-        let [value, least, margin] = check(cells, columns)?;
-        Some(json!({
-            "measure": columns[0].name(), "value": value, "threshold": columns[1].name(),
-            "least": least, "margin": margin,
-        }))
-    };
-    CHECKS.into_iter().filter_map(json).collect()
 }
 
 /// Lines and next step of a job that reached its end time.

@@ -1,7 +1,7 @@
 //! The table of columns: one entry per column of a row.
 //!
 //! Everything else follows from this table: the row of a job, the summary table and its Parquet
-//! metadata, the groups of `billow job --all`, the better side in `billow compare`, and
+//! metadata, `billow job --all`, the better side in `billow compare`, and
 //! docs/reference/columns.md. To add a measure, add one entry here and update the reference page
 //! (`BILLOW_UPDATE_REFERENCE=1` with the repository test `reference`). The entry takes its value
 //! from a [`JobEnd`]: from the history, the tracks, or a field of
@@ -67,7 +67,7 @@ impl CellType {
     }
 }
 
-/// Part of a row, in the order in which `billow job --all` prints them.
+/// Part of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ColumnGroup {
     /// How the job ended.
@@ -85,11 +85,7 @@ pub enum ColumnGroup {
 }
 
 impl ColumnGroup {
-    /// Every group, in printed order.
-    pub const ALL: [Self; 6] =
-        [Self::Outcome, Self::Measures, Self::Audit, Self::Pattern, Self::Cost, Self::Provenance];
-
-    /// Name, as `billow job --all` prints it.
+    /// Name, as the reference of the columns has it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Outcome => "outcome",
