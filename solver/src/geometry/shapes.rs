@@ -13,49 +13,37 @@ use super::shell::Shell;
 /// A flat sheet in z = 0 of `width` × `height` m with uneven cells: inner nodes lie off the regular
 /// grid by up to 8 % of a cell, diagonals alternate. Its reference is its own plane.
 pub fn sheet(columns: u32, rows: u32, width: f64, height: f64) -> Shell {
-    let node = |i: u32, j: u32| j * (columns + 1) + i;
-    let mut positions = Vec::new();
-    for j in 0..=rows {
-        for i in 0..=columns {
-            let inside = i > 0 && j > 0 && i < columns && j < rows;
-            let off = if inside { 0.04 * f64::from((i * 7 + j * 5) % 5) - 0.08 } else { 0.0 };
-            let x = (f64::from(i) + off) / f64::from(columns) * width;
-            let y = (f64::from(j) - 0.7 * off) / f64::from(rows) * height;
-            positions.push(Vector3::new(x, y, 0.0));
-        }
-    }
-    let mut triangles = Vec::new();
-    for j in 0..rows {
-        for i in 0..columns {
-            let [a, b, c, d] = [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)];
-            if (i + j) % 2 == 0 {
-                triangles.extend([[a, b, c], [a, c, d]]);
-            } else {
-                triangles.extend([[a, b, d], [b, c, d]]);
-            }
-        }
-    }
-    in_plane(positions, triangles)
+    let (wide, high) = (f64::from(columns), f64::from(rows));
+    let position = |i: u32, j: u32| {
+        let inside = i > 0 && j > 0 && i < columns && j < rows;
+        let off = if inside { 0.04 * f64::from((i * 7 + j * 5) % 5) - 0.08 } else { 0.0 };
+        [(f64::from(i) + off) / wide * width, (f64::from(j) - 0.7 * off) / high * height]
+    };
+    cells(columns, rows, position, |i, j| (i + j) % 2 == 0)
 }
 
 /// A flat sheet in z = 0 from the origin, `columns` × `rows` equal cells, every diagonal from the
 /// lower left to the upper right. Its reference is its own plane.
 pub fn grid(columns: u32, rows: u32, width: f64, height: f64) -> Shell {
-    cells(columns, rows, width, height, |_, _| true)
+    cells(columns, rows, equal(columns, rows, width, height), |_, _| true)
 }
 
 /// [`grid`] with diagonals that alternate, so that the mesh prefers none of its two directions.
 pub fn crossed_grid(columns: u32, rows: u32, width: f64, height: f64) -> Shell {
-    cells(columns, rows, width, height, |i, j| (i + j) % 2 == 0)
+    cells(columns, rows, equal(columns, rows, width, height), |i, j| (i + j) % 2 == 0)
 }
 
-/// A flat sheet of equal cells; `rises(column, row)`: whether the diagonal of a cell starts at its
+/// The nodes of equal cells.
+fn equal(columns: u32, rows: u32, width: f64, height: f64) -> impl Fn(u32, u32) -> [f64; 2] {
+    move |i, j| [f64::from(i) / f64::from(columns) * width, f64::from(j) / f64::from(rows) * height]
+}
+
+/// A flat sheet of cells with these nodes; `rises(column, row)`: whether the diagonal of a cell starts at its
 /// lower left.
 fn cells(
     columns: u32,
     rows: u32,
-    width: f64,
-    height: f64,
+    position: impl Fn(u32, u32) -> [f64; 2],
     rises: impl Fn(u32, u32) -> bool,
 ) -> Shell {
     let node = |i: u32, j: u32| j * (columns + 1) + i;
@@ -63,20 +51,20 @@ fn cells(
     let mut triangles = Vec::new();
     for j in 0..=rows {
         for i in 0..=columns {
-            let x = f64::from(i) / f64::from(columns) * width;
-            let y = f64::from(j) / f64::from(rows) * height;
+            let [x, y] = position(i, j);
             positions.push(Vector3::new(x, y, 0.0));
             if i < columns && j < rows {
-                let [a, b, c, d] = [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)];
-                if rises(i, j) {
-                    triangles.extend([[a, b, c], [a, c, d]]);
-                } else {
-                    triangles.extend([[a, b, d], [b, c, d]]);
-                }
+                let corners = [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)];
+                triangles.extend(halves(corners, rises(i, j)));
             }
         }
     }
     in_plane(positions, triangles)
+}
+
+/// The two elements of a cell with these corners; `rises`: whether their diagonal starts at the first corner.
+fn halves([a, b, c, d]: [u32; 4], rises: bool) -> [[u32; 3]; 2] {
+    if rises { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
 }
 
 /// A strip along x, one cell wide: every element is the same but for a half turn.
@@ -186,12 +174,8 @@ pub fn revolved(
     for ring in 0..rings {
         for i in 0..around {
             let [a, b] = [node(ring, i), node(ring, i + 1)];
-            let [c, d] = [node(ring + 1, i + 1), node(ring + 1, i)];
-            if !crossed || (ring + i) % 2 == 0 {
-                triangles.extend([[a, b, c], [a, c, d]]);
-            } else {
-                triangles.extend([[a, b, d], [b, c, d]]);
-            }
+            let corners = [a, b, node(ring + 1, i + 1), node(ring + 1, i)];
+            triangles.extend(halves(corners, !crossed || (ring + i) % 2 == 0));
         }
     }
     Shell::relaxed(positions, triangles)

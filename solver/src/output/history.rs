@@ -36,42 +36,6 @@ pub struct Sample {
     pub intersections: u64,
 }
 
-impl Sample {
-    /// Values in the order of [`COLUMNS`].
-    fn row(&self, ledger_residual: f64, gas_residual: f64) -> [f64; COLUMNS.len()] {
-        [
-            self.time,
-            self.z_centre,
-            self.z_rim,
-            self.z_max,
-            self.vz,
-            self.volume,
-            self.pressure,
-            self.temperature,
-            self.gas.mass,
-            self.lid_force,
-            self.ledger.kinetic,
-            self.ledger.strain,
-            self.ledger.contact,
-            self.ledger.gas_work,
-            self.ledger.ambient_work,
-            self.ledger.gravity_work,
-            self.ledger.support_work,
-            self.ledger.material_loss,
-            self.ledger.numerical_dissipation,
-            self.ledger.contact_dissipation,
-            self.ledger.damping_work,
-            self.gas.heat,
-            self.gas.enthalpy_in,
-            self.gas.enthalpy_out,
-            ledger_residual,
-            gas_residual,
-            self.passages as f64,
-            self.intersections as f64,
-        ]
-    }
-}
-
 /// The time series of a run, one sample every [`crate::scene::Outputs::sample_interval`]. All stored
 /// columns have the length of `time`.
 #[derive(Debug, Clone, PartialEq)]
@@ -100,7 +64,7 @@ pub struct Track {
 }
 
 /// Name, unit and meaning of a history column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub struct HistoryColumn {
     /// Name, as in the file.
     pub name: &'static str,
@@ -108,44 +72,52 @@ pub struct HistoryColumn {
     pub unit: &'static str,
     /// Meaning, one line.
     pub meaning: &'static str,
+    /// Its value in a sample.
+    value: fn(&Sample) -> f64,
 }
 
 macro_rules! columns {
-    ($($name:literal [$unit:literal] $meaning:literal),+ $(,)?) => {
+    ($($name:literal [$unit:literal] $meaning:literal, $value:expr);+ $(;)?) => {
         /// All columns of a history, in stored order.
-        pub const COLUMNS: &[HistoryColumn] = &[$(HistoryColumn { name: $name, unit: $unit, meaning: $meaning }),+];
+        pub const COLUMNS: &[HistoryColumn] =
+            &[$(HistoryColumn { name: $name, unit: $unit, meaning: $meaning, value: $value }),+];
     };
 }
 
+// The residuals follow from the whole series: [`History::of`].
 columns! {
-    "time" ["s"] "time since the start of the run",
-    "z_centre" ["m"] "height of the top centre node",
-    "z_rim" ["m"] "mean height of the top ring",
-    "z_max" ["m"] "largest height of any node",
-    "vz" ["m/s"] "mean velocity of the top ring along z",
-    "volume" ["m3"] "enclosed volume",
-    "pressure" ["Pa"] "gas pressure",
-    "temperature" ["K"] "gas temperature (film temperature while there is no gas)",
-    "gas_mass" ["kg"] "gas inside",
-    "lid_force" ["N"] "force of the film on the packing lid",
-    "kinetic_energy" ["J"] "kinetic energy of the film",
-    "strain_energy" ["J"] "energy stored in the film: elastic, and of creep",
+    "time" ["s"] "time since the start of the run", |s| s.time;
+    "z_centre" ["m"] "height of the top centre node", |s| s.z_centre;
+    "z_rim" ["m"] "mean height of the top ring", |s| s.z_rim;
+    "z_max" ["m"] "largest height of any node", |s| s.z_max;
+    "vz" ["m/s"] "mean velocity of the top ring along z", |s| s.vz;
+    "volume" ["m3"] "enclosed volume", |s| s.volume;
+    "pressure" ["Pa"] "gas pressure", |s| s.pressure;
+    "temperature" ["K"] "gas temperature (film temperature while there is no gas)", |s| s.temperature;
+    "gas_mass" ["kg"] "gas inside", |s| s.gas.mass;
+    "lid_force" ["N"] "force of the film on the packing lid", |s| s.lid_force;
+    "kinetic_energy" ["J"] "kinetic energy of the film", |s| s.ledger.kinetic;
+    "strain_energy" ["J"] "energy stored in the film: elastic, and of creep", |s| s.ledger.strain;
     "contact_energy" ["J"] "elastic energy of contact: minus the work of contact forces since time 0",
-    "gas_work" ["J"] "work of the gas on the film since time 0",
-    "ambient_work" ["J"] "work of the ambient pressure on the film since time 0",
-    "gravity_work" ["J"] "work of gravity on the film since time 0",
-    "support_work" ["J"] "work of moving supports and plates on the film since time 0",
-    "material_loss" ["J"] "energy lost in the film's material since time 0",
+        |s| s.ledger.contact;
+    "gas_work" ["J"] "work of the gas on the film since time 0", |s| s.ledger.gas_work;
+    "ambient_work" ["J"] "work of the ambient pressure on the film since time 0", |s| s.ledger.ambient_work;
+    "gravity_work" ["J"] "work of gravity on the film since time 0", |s| s.ledger.gravity_work;
+    "support_work" ["J"] "work of moving supports and plates on the film since time 0", |s| s.ledger.support_work;
+    "material_loss" ["J"] "energy lost in the film's material since time 0", |s| s.ledger.material_loss;
     "numerical_dissipation" ["J"] "energy taken by numerical damping and time step since time 0",
+        |s| s.ledger.numerical_dissipation;
     "friction_work" ["J"] "energy dissipated by friction and by collision impulses since time 0",
-    "damping_work" ["J"] "energy dissipated by mass damping since time 0",
-    "heat" ["J"] "heat from the film to the gas since time 0",
-    "enthalpy_in" ["J"] "enthalpy let in since time 0",
+        |s| s.ledger.contact_dissipation;
+    "damping_work" ["J"] "energy dissipated by mass damping since time 0", |s| s.ledger.damping_work;
+    "heat" ["J"] "heat from the film to the gas since time 0", |s| s.gas.heat;
+    "enthalpy_in" ["J"] "enthalpy let in since time 0", |s| s.gas.enthalpy_in;
     "enthalpy_out" ["J"] "enthalpy leaked since time 0, negative where gas entered through the leak",
-    "ledger_residual" ["1"] "energy ledger residual: energy error over the energy moved so far",
-    "gas_residual" ["1"] "gas balance residual: the larger relative error of mass and energy",
-    "passages" ["1"] "passages of film through film counted so far",
-    "intersections" ["1"] "intersections of the mesh at this sample",
+        |s| s.gas.enthalpy_out;
+    "ledger_residual" ["1"] "energy ledger residual: energy error over the energy moved so far", |_| 0.0;
+    "gas_residual" ["1"] "gas balance residual: the larger relative error of mass and energy", |_| 0.0;
+    "passages" ["1"] "passages of film through film counted so far", |s| s.passages as f64;
+    "intersections" ["1"] "intersections of the mesh at this sample", |s| s.intersections as f64;
 }
 
 impl Default for History {
@@ -178,14 +150,12 @@ impl History {
         let gas_balances: Vec<GasBalance> = samples.iter().map(|sample| sample.gas).collect();
         let residuals = crate::output::ledger::residuals(&ledgers);
         let gas_residuals = crate::output::ledger::gas_residuals(&gas_balances);
-        let mut history = Self::new();
-        for column in &mut history.columns {
-            column.reserve_exact(samples.len());
-        }
-        for ((sample, residual), gas_residual) in samples.iter().zip(residuals).zip(gas_residuals) {
-            history.push(&sample.row(residual, gas_residual));
-        }
-        history
+        let column = |column: &HistoryColumn| match column.name {
+            "ledger_residual" => residuals.clone(),
+            "gas_residual" => gas_residuals.clone(),
+            _ => samples.iter().map(column.value).collect(),
+        };
+        Self { columns: COLUMNS.iter().map(column).collect(), rings: true }
     }
 
     /// Appends one sample: values in the order of [`COLUMNS`].

@@ -36,44 +36,26 @@ mod tests {
 
     const HOLD: f64 = 0.005;
 
-    fn millisecond_samples(values: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        ((0..values.len()).map(|k| k as f64 * 1e-3).collect(), values.to_vec())
-    }
-
-    fn find(values: &[f64]) -> Option<f64> {
-        let (time, value) = millisecond_samples(values);
-        first_hold(&time, &value, 1.0, HOLD)
-    }
-
     #[test]
-    fn the_crossing_is_interpolated() {
-        let found = find(&[0.0, 0.5, 1.5, 2.0, 2.0, 2.0, 2.0, 2.0]).unwrap();
-        assert!((found - 0.0015).abs() < 1e-15);
-    }
-
-    #[test]
-    fn a_stay_shorter_than_the_hold_does_not_count() {
-        // Above from 0.5 ms to 4.5 ms, and again from 5.5 ms to the end.
-        let found = find(&[0.0, 2.0, 2.0, 2.0, 2.0, 0.0, 2.0, 2.0, 2.0, 2.0, 2.0, 2.0]).unwrap();
-        assert!((found - 0.0055).abs() < 1e-15, "{found}");
-    }
-
-    #[test]
-    fn a_stay_of_exactly_the_hold_counts() {
-        // From 0.5 ms to 5.5 ms.
-        let found = find(&[0.0, 2.0, 2.0, 2.0, 2.0, 2.0, 0.0, 0.0]).unwrap();
-        assert!((found - 0.0005).abs() < 1e-15);
-    }
-
-    #[test]
-    fn no_stay_of_that_length_is_none() {
-        assert_eq!(find(&[0.0; 20]), None);
-        assert_eq!(find(&[0.0, 0.0, 0.0, 2.0, 2.0, 2.0]), None);
-        assert_eq!(find(&[]), None);
-    }
-
-    #[test]
-    fn a_series_above_the_threshold_reaches_it_at_its_start() {
-        assert_eq!(find(&[1.0; 6]), Some(0.0));
+    fn the_first_stay_of_the_hold_is_found() {
+        let cases: [(&[f64], Option<f64>); 7] = [
+            // The crossing is interpolated.
+            (&[0.0, 0.5, 1.5, 2.0, 2.0, 2.0, 2.0, 2.0], Some(0.0015)),
+            // Above from 0.5 ms to 4.5 ms, and again from 5.5 ms to the end.
+            (&[0.0, 2.0, 2.0, 2.0, 2.0, 0.0, 2.0, 2.0, 2.0, 2.0, 2.0, 2.0], Some(0.0055)),
+            // Exactly the hold: from 0.5 ms to 5.5 ms.
+            (&[0.0, 2.0, 2.0, 2.0, 2.0, 2.0, 0.0, 0.0], Some(0.0005)),
+            (&[0.0; 20], None),
+            (&[0.0, 0.0, 0.0, 2.0, 2.0, 2.0], None),
+            (&[], None),
+            (&[1.0; 6], Some(0.0)),
+        ];
+        for (values, expected) in cases {
+            let time: Vec<f64> = (0..values.len()).map(|k| k as f64 * 1e-3).collect();
+            let found = first_hold(&time, values, 1.0, HOLD);
+            assert_eq!(found.is_some(), expected.is_some(), "{values:?}");
+            let error = found.unwrap_or(0.0) - expected.unwrap_or(0.0);
+            assert!(error.abs() < 1e-15, "{values:?}: {found:?}");
+        }
     }
 }

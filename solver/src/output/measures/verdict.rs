@@ -75,19 +75,11 @@ mod tests {
         assert_eq!(judge(0.85, 0.8, 0.8), (Verdict::Partial, true));
         assert_eq!(judge(0.849, 0.8, 0.8), (Verdict::Stalled, true));
         assert_eq!(judge(0.5, 0.4, 0.94), (Verdict::Stalled, false));
-    }
-
-    #[test]
-    fn deployed_takes_precedence_over_stalled() {
-        let odd = Thresholds { stalled_volume: 2.0, ..Thresholds::default() };
-        let tenth = LastTenth { mean_volume: 1.0, min_volume: 1.0, min_height: 1.0 };
-        assert_eq!(tenth.judge(&odd).0, Verdict::Deployed);
-    }
-
-    #[test]
-    fn a_partial_verdict_far_from_one_threshold_is_not_near_threshold() {
         // The volume misses its threshold by little, the height by much: no small change helps.
         assert_eq!(judge(0.94, 0.925, 0.5), (Verdict::Partial, false));
+        let odd = Thresholds { stalled_volume: 2.0, ..Thresholds::default() };
+        let tenth = LastTenth { mean_volume: 1.0, min_volume: 1.0, min_height: 1.0 };
+        assert_eq!(tenth.judge(&odd).0, Verdict::Deployed, "it takes precedence over stalled");
     }
 
     #[test]
