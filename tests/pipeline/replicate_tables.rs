@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::support::{TestFolder, grid, json_of, stderr};
+use crate::support::{TestFolder, grid, json_of};
 
 /// Two strategies at three rates, four thicknesses each; faster than 0.8 m/s is not safe.
 fn ran(limits: &Value) -> TestFolder {
@@ -18,8 +18,7 @@ fn ran(limits: &Value) -> TestFolder {
     });
     study["replicates"] = json!({"film.thickness": ["25 um", "26 um", "27 um", "28 um"]});
     study["limits"] = limits.clone();
-    let folder = TestFolder::finished(&study);
-    folder
+    TestFolder::finished(&study)
 }
 
 fn numbers(rows: &[&Value], column: &str) -> Vec<f64> {
@@ -64,42 +63,17 @@ fn a_table_has_one_row_per_point_and_runs_on_request() {
     let few = json_of(&folder, &["table", "--where", "thickness < '26.5 um'"]);
     assert_eq!(few[0]["runs"], 2);
 
-    let sorted = folder.stdout(&[
-        "table",
-        "--sort",
-        "peak_vz:desc",
-        "--format",
-        "csv",
-        "--columns",
-        "peak_vz",
-    ]);
-    let speeds: Vec<f64> = sorted.lines().skip(1).map(|line| line.parse().unwrap()).collect();
-    assert_eq!(speeds.len(), 6);
-    assert!(speeds.is_sorted_by(|a, b| a >= b));
-}
-
-#[test]
-fn a_reader_sees_ranges_proportions_and_the_speed_of_each_strategy() {
-    let folder = ran(&json!({"peak_vz": "< 10 m/s"}));
-    let output = folder.run(&["table", "--units", "t_90_z_rim=ms"]);
-    let table = String::from_utf8(output.stdout.clone()).unwrap();
+    let table = folder.stdout(&["table"]);
     assert_eq!(table.lines().count(), 8, "two lines of header, one row per point: {table}");
-    let header = table.lines().next().unwrap();
+    let header: Vec<&str> = table.lines().next().unwrap().split_whitespace().collect();
     for name in ["strategy", "runs", "safe", "smallest_margin", "peak_kinetic_energy", "peak_vz"] {
-        assert!(header.split_whitespace().any(|word| word == name), "{name}: {header}");
+        assert!(header.contains(&name), "{name}: {header:?}");
     }
-    assert!(!header.contains("job") && !header.contains("thickness"), "{header}");
-    assert!(table.contains(" of 4 ("), "{table}");
-    assert!(table.contains(" ["), "{table}");
-    assert!(stderr(&output).contains("6 points, 24 runs"), "{}", stderr(&output));
-    let all = folder.stdout(&["table", "--columns", "all"]);
-    assert!(!all.contains("peak_vz_least"), "the range stands beside the median");
+    assert!(
+        !header.contains(&"job") && table.contains(" of 4 (") && table.contains(" ["),
+        "{table}"
+    );
     folder.refuses(&["table", "--columns", "job"], "--runs");
-    // The single runs, as in a study without replicates.
-    let runs = folder.stdout(&["table", "--runs"]);
-    let header = runs.lines().next().unwrap();
-    assert!(header.starts_with("job ") && header.contains("smallest_margin"), "{header}");
-    assert!(header.contains("peak_vz"), "a study of strategies: {header}");
 }
 
 #[test]
@@ -133,16 +107,6 @@ fn compare_pairs_points_by_their_medians() {
     assert_eq!(single.as_array().unwrap().len(), 12);
     let replicate = json_of(&folder, &["compare", "--by", "thickness", "--base", "25 um"]);
     assert_eq!(replicate.as_array().unwrap().len(), 18, "single runs");
-
-    let summary =
-        json_of(&folder, &[&by[..], &["--summary", "--measures", "smallest_margin"]].concat());
-    let (low, high) = (&summary[0]["other_better_low"], &summary[0]["other_better_high"]);
-    assert!(low.as_f64().unwrap() < high.as_f64().unwrap());
-    assert_eq!(summary[0]["pairs"], 3);
-    let shown = folder.run(&by);
-    let text = String::from_utf8(shown.stdout.clone()).unwrap();
-    assert!(text.contains(" of 4 (") && text.contains(" ["), "{text}");
-    assert!(stderr(&shown).contains("larger smallest_margin"), "{}", stderr(&shown));
 }
 
 #[test]
