@@ -54,7 +54,7 @@ impl Settings {
                     self.values[index] = Value::Null;
                 }
                 Some(index) => {
-                    self.values[index] = table.keys[index].value(value, &path, source)?
+                    self.values[index] = table.keys[index].value(value, &path, source)?;
                 }
                 None if section => self.read(&path, value, source)?,
                 None if structured => {}
@@ -150,7 +150,7 @@ pub(crate) fn check_version(tree: &Json, source: &Source) -> Result<(), InputErr
     match tree.get("version") {
         Some(Json::Integer(version)) if *version > 1 => Err(source.error(
             "version",
-            &version.to_string(),
+            version.to_string(),
             "is a newer format than this program reads",
             "1; or use a newer billow",
         )),

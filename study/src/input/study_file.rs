@@ -26,7 +26,7 @@ pub fn text_of<'a>(bytes: &'a [u8], file: &str) -> std::result::Result<&'a str, 
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let byte = error.valid_up_to();
-        let line = 1 + bytes[..byte].iter().filter(|byte| **byte == b'\n').count();
+        let line = bytes[..byte].split(|byte| *byte == b'\n').count();
         let problem = format!("is not UTF-8 from byte {byte} on, in line {line}");
         refuse(problem, "name a study file or a scene file, saved as UTF-8")
     })?;

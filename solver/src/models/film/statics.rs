@@ -100,7 +100,7 @@ pub fn erected(instruction_set: InstructionSet, scene: &Scene) -> Result<Erected
 /// Tolerances of a capsule's equilibria. Chosen: volumes and heights err by less than 1e-6.
 const TOLERANCES: Tolerances = Tolerances { residual: 1e-5, step: 1e-6, iterations: 400 };
 
-/// A motion without translation: each node has its own displacement ([`Mover::beside`]).
+/// A motion without translation: each node has its own displacement.
 const UNIT_MOTION: Motion = Motion {
     from: 0.0,
     to: 1.0,

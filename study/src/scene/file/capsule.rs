@@ -76,7 +76,7 @@ fn check(design: &FoldDesign, erected: bool, source: &Source) -> Result<(), Inpu
     if elements > MAX_ELEMENTS {
         let problem = format!("makes a capsule of {elements} elements");
         let allowed = format!("fewer: 2 N (M + 1) n² up to {MAX_ELEMENTS}");
-        return Err(source.error("design.subdivisions", &n.to_string(), problem, allowed));
+        return Err(source.error("design.subdivisions", n.to_string(), problem, allowed));
     }
     if design.caps == Caps::Circular && !erected {
         return Err(source.error(

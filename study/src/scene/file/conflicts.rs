@@ -44,7 +44,7 @@ pub(super) fn check(
                 );
                 return Err(source.error(
                     &format!("supports[{second}]"),
-                    &format!("{:?}", b.name),
+                    format!("{:?}", b.name),
                     problem,
                     "one motion along each direction of a node; nothing else along the normal of a body",
                 ).with_hint("leave the node, or a letter of fix, out of one of the two"));

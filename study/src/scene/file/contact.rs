@@ -60,7 +60,7 @@ pub(super) fn check_plates(film: &FilmScene, source: &Source) -> Result<(), Inpu
             let [x, y, z] = [plate.point.x, plate.point.y, plate.point.z];
             return Err(source.error(
                 &format!("contact.plates[{index}]"),
-                &format!("\"{}\" through ({x}, {y}, {z})", plate.name),
+                format!("\"{}\" through ({x}, {y}, {z})", plate.name),
                 if gap > -MIN_PLATE_GAP {
                     "touches film at the start".to_owned()
                 } else {

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! A method is an integrator of film (each of [`IntegratorKind::ALL`]), a model without film, or the search for a static
-//! equilibrium. A map file ([`mod@file`]) names scenes, axes and what is expected of each cell. The runs go to the
+//! equilibrium. A map file names scenes, axes and what is expected of each cell. The runs go to the
 //! solver directly: a step beyond the stable one is outside the range of `solver.cfl`, and the map must show what it
 //! does.
 
