@@ -98,7 +98,10 @@ fn run(options: &Options, kind: &Kind) -> Result<(Vec<Value>, usize), String> {
     let numbers = match options.number {
         Some(number) if number < all => vec![number],
         Some(number) => return Err(format!("--number {number}: there are {all} trials, from 0")),
-        None => chosen_numbers(all, options.share),
+        // The same ones for every seed.
+        None => (0..all)
+            .filter(|n| *n == 0 || Random::of_trial(0, "share", *n).fraction() < options.share)
+            .collect(),
     };
     println!("{}: {} trials", kind.name, numbers.len());
     let make = |number: &usize| {
@@ -124,15 +127,6 @@ fn run(options: &Options, kind: &Kind) -> Result<(Vec<Value>, usize), String> {
     place.remove();
     let bad = trials.iter().filter(|trial| !trial.faults.is_empty()).count();
     Ok((row(kind, &trials, bad), bad))
-}
-
-/// That share of the numbers below `all`, at least one: the same ones for every seed.
-fn chosen_numbers(all: usize, share: f64) -> Vec<usize> {
-    let mut numbers: Vec<usize> = (0..all).collect();
-    numbers.sort_by_cached_key(|number| Random::of_trial(0, "share", *number).next());
-    let wanted = share * all as f64;
-    let counted = numbers.into_iter().enumerate();
-    counted.filter(|(index, _)| (*index as f64) < wanted).map(|(_, number)| number).collect()
 }
 
 /// Names a bad trial, and how to repeat it.

@@ -2,7 +2,7 @@
 //! call. Resumed, it gives the same bits.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -61,11 +61,10 @@ pub fn signals(place: &Place) -> Result<Prepared, String> {
         let (name, study, truth, time) = &subjects[subject];
         let (signal, code) = SIGNALS[number % SIGNALS.len()];
         trial.what = format!("SIG{signal}, {name}");
-        if signal == "HUP" && hangup_ignored() {
-            return trial.skip("SIGHUP is ignored here, as under nohup");
-        }
         place.write_study(study);
-        let mut running = place.start(place.billow(RUN));
+        // Under nohup SIGHUP is ignored.
+        let run = format!("exec env --default-signal=HUP \"$0\" {RUN}");
+        let mut running = place.start(place.shell(&run));
         running.wait_for_lock();
         sleep(time.mul_f64(0.8 * random.fraction()));
         if running.has_ended() {
@@ -87,13 +86,6 @@ pub fn signals(place: &Place) -> Result<Prepared, String> {
             trial.fault(format!("doctor: {}", doctor.stdout));
         }
     }))
-}
-
-/// Whether this process ignores SIGHUP; then so does every program that it starts.
-fn hangup_ignored() -> bool {
-    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    ignored.is_some_and(|mask| u64::from_str_radix(mask.trim(), 16).is_ok_and(|mask| mask & 1 == 1))
 }
 
 /// Letters of the calls that need an inode, and of those that open a file.
@@ -126,9 +118,9 @@ pub fn system_calls(place: &Place) -> Result<Prepared, String> {
     place.write_study(&studies::small());
     let letters_of = |kinds: &str| {
         let _ = fs::remove_dir_all(place.results());
-        let finish = disturbed(place, &shim, ("", "count", 0, kinds), 0);
-        let text = if finish.succeeded() { letters(&log(place)) } else { None };
-        text.ok_or_else(|| format!("the counted run failed: {}", finish.said()))
+        let (finish, letters) = disturbed(place, &shim, ("", "count", 0, kinds), 0);
+        let problem = || format!("the counted run failed: {}", finish.said());
+        finish.succeeded().then_some(letters).ok_or_else(problem)
     };
     let (creations, opens, all) = (letters_of(CREATIONS)?, letters_of(OPENS)?, letters_of("")?);
     let truth = Truth::read(place)?;
@@ -153,7 +145,7 @@ pub fn system_calls(place: &Place) -> Result<Prepared, String> {
         let (name, mode, ..) = disturbance;
         trial.what = format!("{name} {at}");
         place.write_study(&studies::small());
-        let finish = disturbed(place, &shim, disturbance, at);
+        let (finish, _) = disturbed(place, &shim, disturbance, at);
         trial.time(finish.wall);
         match mode {
             "before" | "half" if finish.signal == Some(9) && !finish.hung => {}
@@ -170,29 +162,20 @@ pub fn system_calls(place: &Place) -> Result<Prepared, String> {
     }))
 }
 
-/// The file in which the library counts the calls of a place.
-fn log(place: &Place) -> PathBuf {
-    place.join("calls")
-}
-
-/// Runs the study of a place under the library, on one thread.
+/// Runs the study of a place under the library, on one thread; the letters of the calls that it counts.
 fn disturbed(
     place: &Place,
     shim: &Path,
     (_, mode, error, kinds): (&str, &str, i32, &str),
     at: usize,
-) -> Finish {
-    let _ = fs::remove_file(log(place));
+) -> (Finish, Vec<u8>) {
+    let log = place.join("calls");
+    let _ = fs::remove_file(&log);
     let mut command = place.billow("run s.json --quiet --threads 1");
-    command.env("LD_PRELOAD", shim).env("TORTURE_LOG", log(place));
+    command.env("LD_PRELOAD", shim).env("TORTURE_LOG", &log);
     command.env("TORTURE_MODE", mode).env("TORTURE_KINDS", kinds);
     command.env("TORTURE_AT", at.to_string()).env("TORTURE_ERRNO", error.to_string());
-    place.start(command).finish()
-}
-
-/// The letters of the calls that were counted.
-fn letters(log: &Path) -> Option<Vec<u8>> {
-    let log = fs::read(log).ok()?;
-    let count = u64::from_le_bytes(log.get(..8)?.try_into().ok()?);
-    Some(log.get(8..8 + usize::try_from(count).ok()?)?.to_vec())
+    let finish = place.start(command).finish();
+    let log = fs::read(&log).unwrap_or_default().into_iter();
+    (finish, log.skip(8).take_while(|letter| *letter != 0).collect())
 }
