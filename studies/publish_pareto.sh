@@ -42,6 +42,6 @@ done
 for scene in capsule_residual end_state slow_filling; do
   cp "$new/pareto_$scene.png" "$out"
 done
-for scene in exact injected_piston breathing_sphere square_airbag stretched_disc; do
+for scene in exact injected_piston breathing_sphere stretched_disc; do
   cp "results/exact/charts/pareto_$scene.png" "$out"
 done

@@ -40,7 +40,7 @@ mod moving_fold;
 mod oscillation;
 pub mod shapes;
 pub(crate) mod sphere_motion;
-pub(crate) mod static_airbag;
+mod static_airbag;
 mod static_discs;
 mod static_end_state;
 mod static_shells;

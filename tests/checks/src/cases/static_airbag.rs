@@ -5,37 +5,8 @@
 //! found, and lower is better.
 
 use billow_solver::geometry::shapes::{grid, nodes_where};
-use billow_solver::statics::{Relaxation, StaticSolution, Unsettled};
 
 use super::prelude::*;
-
-/// Most steps of a damped motion. Chosen: ten times what the finest mesh needs that is brought to rest by motion.
-const MAX_STEPS: u64 = 100_000;
-
-/// The static equilibrium of a quarter of the upper sheet with this number of cells along its side.
-pub fn inflated(rig: &Rig, cells: u32) -> Result<StaticSolution> {
-    equilibrium(rig, &quarter(cells), None)
-}
-
-/// The same sheet brought to rest by damped motion with an integrator at a CFL number: the film, and its potential energy
-/// (J); or the film as far as it came, with the failure.
-pub fn relaxed(
-    rig: &Rig,
-    cells: u32,
-    (integrator, cfl): (IntegratorKind, f64),
-) -> Result<std::result::Result<(FilmSimulation, f64), Box<Unsettled>>> {
-    let mut scene = quarter(cells);
-    let Filling::Pressure(pressure) = scene.filling else {
-        unreachable!("the sheet is under a fixed overpressure")
-    };
-    (scene.solver.integrator, scene.solver.cfl) = (integrator, cfl);
-    let relaxation = Relaxation { step_limit: MAX_STEPS, ..Relaxation::default() };
-    let settled = relaxation.relax_at(rig.start(&scene)?, pressure).map(|film| {
-        let energy = film.view().ledger().strain - pressure * film.view().state.volume;
-        (film, energy)
-    });
-    Ok(settled)
-}
 
 /// A quarter of the upper sheet.
 fn quarter(cells: u32) -> FilmScene {
@@ -66,7 +37,7 @@ pub fn square_airbag(rig: &Rig) -> Outcome {
         entry("square_airbag", ["energy_band", "height_band", "volume_band"]);
     let (mut judged, mut whole_volume) = (Vec::new(), f64::NAN);
     for (cells, row) in [16, 32, 64].into_iter().zip(rows("square_airbag")) {
-        let state = inflated(rig, cells)?;
+        let state = equilibrium(rig, &quarter(cells), None)?;
         let name = |what: &str| format!("{what}, {cells} cells");
         let corner = state.positions.get(state.positions.len() - 1);
         let inward = 2.0_f64.sqrt() * side() - corner.xy().norm();

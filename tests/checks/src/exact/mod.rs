@@ -1,7 +1,7 @@
-//! `billow-checks pareto`: work-precision diagrams of scenes with an exact answer, or none but their finest mesh.
+//! `billow-checks pareto`: work-precision diagrams of scenes with an exact answer.
 //!
 //! ```text
-//! seconds = wall time on one thread over the simulated time;  of a scene at rest, the wall time
+//! seconds = wall time on one thread over the simulated time
 //! ```
 //! The scenes run the code of the cases of the same names at several meshes and steps. Relaxation and set-up before
 //! the motion do not count.
@@ -19,20 +19,16 @@ use billow_study::platform::files::{Disk, Files, disk_error};
 use crate::cases::Rig;
 use crate::output::{Options, chosen};
 
-mod airbag;
-mod meter;
-mod piston;
-mod vibrations;
+mod scenes;
 
 /// A scene: its name, and the function that runs it at every mesh and step, with every integrator that can.
 type Scene = (&'static str, fn(&Rig) -> crate::cases::Result<SceneRuns>);
 
 /// Every scene.
-const SCENES: [Scene; 4] = [
-    ("injected_piston", piston::injected_piston),
-    ("breathing_sphere", vibrations::breathing_sphere),
-    ("square_airbag", airbag::square_airbag),
-    ("stretched_disc", vibrations::stretched_disc),
+const SCENES: [Scene; 3] = [
+    ("injected_piston", scenes::injected_piston),
+    ("breathing_sphere", scenes::breathing_sphere),
+    ("stretched_disc", scenes::stretched_disc),
 ];
 
 /// Arguments of `billow-checks pareto`.
