@@ -92,15 +92,6 @@ impl Shell {
         }
     }
 
-    /// The same film with the stress-free reference of other positions (m) of its nodes, each element
-    /// flat.
-    #[must_use]
-    pub fn with_reference(mut self, positions: &[Vector3<f64>]) -> Self {
-        self.reference =
-            self.triangles.iter().map(|t| flat(t.map(|n| positions[n as usize]))).collect();
-        self
-    }
-
     /// Stress-free area of the film, m².
     pub fn reference_area(&self) -> f64 {
         self.reference.iter().map(|[a, b, c]| 0.5 * (b - a).perp(&(c - a))).sum()

@@ -50,46 +50,6 @@ pub struct ObjError {
     pub allowed: &'static str,
 }
 
-/// OBJ keywords that do not define the surface.
-const IGNORED_KEYWORDS: [&str; 36] = [
-    "vt",
-    "vn",
-    "vp",
-    "s",
-    "mg",
-    "usemtl",
-    "mtllib",
-    "usemap",
-    "maplib",
-    "l",
-    "p",
-    "bevel",
-    "c_interp",
-    "d_interp",
-    "lod",
-    "shadow_obj",
-    "trace_obj",
-    "ctech",
-    "stech",
-    "cstype",
-    "deg",
-    "bmat",
-    "step",
-    "curv",
-    "curv2",
-    "surf",
-    "parm",
-    "trim",
-    "hole",
-    "scrv",
-    "sp",
-    "end",
-    "con",
-    "call",
-    "csh",
-    "vc",
-];
-
 const VERTEX: &str = "v and three finite numbers, as in `v 0.1 2e-3 -4`";
 const FACE: &str = "three or more different vertices by number, 1 for the first or -1 for the last so \
                     far, as in `f 1 2 3` or `f 1/4 2/5 -1/6`";
@@ -127,7 +87,12 @@ pub fn read(text: &str, given: usize) -> Result<Surface, ObjError> {
             "g" => groups = words.map(str::to_owned).collect(),
             // An object name may contain spaces.
             "o" => object = vec![words.collect::<Vec<_>>().join(" ")],
-            other if IGNORED_KEYWORDS.contains(&other) => {}
+            // OBJ keywords that do not define the surface.
+            "vt" | "vn" | "vp" | "s" | "mg" | "usemtl" | "mtllib" | "usemap" | "maplib" | "l"
+            | "p" | "bevel" | "c_interp" | "d_interp" | "lod" | "shadow_obj" | "trace_obj"
+            | "ctech" | "stech" | "cstype" | "deg" | "bmat" | "step" | "curv" | "curv2"
+            | "surf" | "parm" | "trim" | "hole" | "scrv" | "sp" | "end" | "con" | "call"
+            | "csh" | "vc" => {}
             other => {
                 let shown: String = other.chars().take(20).collect();
                 return Err(ObjError {
