@@ -1,10 +1,8 @@
 //! The outputs of a run: history, frames, measures, energy ledger, audit, events, checkpoint.
 
 pub mod audit;
-pub mod audit_kind;
 pub mod checkpoint;
 pub mod events;
-pub mod failure_kind;
 pub mod frames;
 pub mod history;
 pub mod ledger;

@@ -4,27 +4,18 @@
 //! changes job ids, and data without influence on results does not belong in a [`Scene`].
 
 mod capsule;
-mod contact;
 pub mod error;
-mod film;
 pub mod film_scene;
 pub mod film_support;
-mod gas;
 pub mod inflow;
 pub mod monitor_settings;
 pub mod motion;
-mod outputs;
 pub mod paper;
 pub mod plate;
-mod solver;
-mod support;
 pub mod timeline;
 mod validate;
 
-pub use capsule::Scene;
-pub use contact::Contact;
-pub use film::Film;
-pub use gas::{GasSupply, HeatTransfer, InflowWindow, Species};
-pub use outputs::{MAX_SAMPLES, Outputs, Thresholds};
-pub use solver::{DEFAULT_CFL, IntegratorKind, ModelKind, Solver, Stepping};
-pub use support::{Support, SupportLocation};
+pub use capsule::{
+    Contact, DEFAULT_CFL, Film, GasSupply, HeatTransfer, InflowWindow, IntegratorKind, MAX_SAMPLES,
+    ModelKind, Outputs, Scene, Solver, Species, Stepping, Support, SupportLocation, Thresholds,
+};

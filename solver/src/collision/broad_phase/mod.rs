@@ -7,8 +7,7 @@
 //!   so for elements that share a node.
 //! - [`scheduler`] keeps every pair of tree nodes pending in a [`queue`] until its parts have
 //!   approached by the distance between them.
-//! - [`traversal`] visits all pairs within a radius at once, without any history.
-//! - [`collision_mesh`] holds the constant data of all of these.
+//! - [`collision_mesh`] holds the constant data of all of these, and visits all pairs within a radius at once.
 
 pub mod adjacent;
 mod bisection;
@@ -19,4 +18,3 @@ pub mod kdop;
 pub mod query;
 pub mod queue;
 pub mod scheduler;
-pub mod traversal;

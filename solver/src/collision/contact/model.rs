@@ -3,9 +3,8 @@
 use super::broad_phase_fault::BroadPhaseFault;
 use super::distance_batch::{edge_edge_distances, node_element_distances};
 use super::pair::{Pair, PairKind, vectors_of};
-use crate::collision::broad_phase::collision_mesh::CollisionMesh;
+use crate::collision::broad_phase::collision_mesh::{CollisionMesh, pairs_within_bounds};
 use crate::collision::broad_phase::kdop::KDops;
-use crate::collision::broad_phase::traversal::pairs_within_bounds;
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
 use crate::platform::simd::InstructionSet;
