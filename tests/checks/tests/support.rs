@@ -1,44 +1,35 @@
 //! Runs the programs in a temporary folder.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 /// A temporary folder in which `billow-checks` runs.
-pub struct Folder {
-    folder: tempfile::TempDir,
-}
+pub struct Folder(tempfile::TempDir);
 
 impl Folder {
     /// An empty folder.
     pub fn new() -> Self {
-        Self { folder: tempfile::tempdir().unwrap() }
+        Self(tempfile::tempdir().unwrap())
     }
 
     /// Path of the folder.
     pub fn path(&self) -> &Path {
-        self.folder.path()
+        self.0.path()
     }
 
-    /// Runs a study of `billow` and returns the folder of its results.
-    pub fn study(&self, name: &str, study: &serde_json::Value) -> PathBuf {
-        let file = self.path().join(format!("{name}.json"));
+    /// Runs a study of `billow` into the folder of this name.
+    pub fn study(&self, name: &str, study: &serde_json::Value) {
+        let [file, results] = [format!("{name}.json"), name.to_owned()]
+            .map(|name| self.path().join(name).to_string_lossy().into_owned());
         std::fs::write(&file, study.to_string()).unwrap();
-        let results = self.path().join(name);
-        let line: [&std::ffi::OsStr; 6] = [
-            "billow".as_ref(),
-            "run".as_ref(),
-            file.as_ref(),
-            "--results".as_ref(),
-            results.as_ref(),
-            "-q".as_ref(),
-        ];
+        let line = ["billow", "run", &file, "--results", &results, "-q"];
         billow_study::cli::command(line, &mut Vec::new()).unwrap();
-        results
     }
 
     /// Runs the command to its end.
     pub fn run(&self, arguments: &[&str]) -> Output {
-        checks(arguments).current_dir(self.path()).output().unwrap()
+        let mut command = Command::new(env!("CARGO_BIN_EXE_billow-checks"));
+        command.args(arguments).current_dir(self.path()).stdin(Stdio::null()).output().unwrap()
     }
 
     /// Runs the command, which must succeed; its stdout.
@@ -47,14 +38,6 @@ impl Folder {
         assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
         String::from_utf8(output.stdout).unwrap()
     }
-}
-
-/// `billow-checks` with arguments.
-pub fn checks(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_billow-checks"));
-    command.args(arguments);
-    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    command
 }
 
 /// The stderr of a command.

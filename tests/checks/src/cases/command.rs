@@ -9,7 +9,7 @@ use billow_study::cli::print::print_rows;
 use billow_study::input::value::Value;
 use billow_study::platform::error::{Error, Result};
 
-use super::{CASES, Case, Judged, Rig, Tier, run_all};
+use super::{CASES, Case, Judged, Rig, Row, Tier, run_all};
 use crate::output::{Options, chosen};
 
 /// Arguments of `billow-checks validate`.
@@ -65,14 +65,25 @@ pub fn verdict(judged: &[Judged]) -> Result<()> {
     Err(Error::JobsFailed(format!("{number} of {all} cases out of tolerance: {names}")))
 }
 
-/// Prints one row per quantity of the cases. `seconds` is the time of the whole case.
+/// Columns of the output. `seconds` is the time of the whole case.
+const COLUMNS: [&str; 10] = [
+    "case",
+    "quantity",
+    "value",
+    "reference",
+    "error",
+    "order",
+    "tolerance",
+    "pass",
+    "seconds",
+    "note",
+];
+
+/// Prints one row per quantity of the cases.
 pub fn print(judged: &[Judged], format: Format, out: &mut dyn Write) -> Result<()> {
-    let table = format == Format::Table;
     let number = |value: f64| Value::from(Some(value).filter(|value| value.is_finite()));
-    let mut rows = Vec::new();
-    for (case, row) in judged.iter().flat_map(|case| case.rows.iter().map(move |row| (case, row))) {
-        let pass = if row.pass { "yes" } else { "NO" };
-        rows.push(vec![
+    let of_row = |case: &Judged, row: &Row| -> Vec<Value> {
+        vec![
             case.name.into(),
             row.quantity.as_str().into(),
             number(row.value),
@@ -80,23 +91,11 @@ pub fn print(judged: &[Judged], format: Format, out: &mut dyn Write) -> Result<(
             number(row.error),
             row.order.map_or(Value::Null, number),
             number(row.band),
-            if table { pass.into() } else { row.pass.into() },
+            row.pass.into(),
             number(case.seconds),
             row.note.as_str().into(),
-        ]);
-    }
-    let value = if table { "billow" } else { "value" };
-    let columns = [
-        "case",
-        "quantity",
-        value,
-        "reference",
-        "error",
-        "order",
-        "tolerance",
-        "pass",
-        "seconds",
-        "note",
-    ];
-    print_rows(&columns, &rows, format, out)
+        ]
+    };
+    let rows = judged.iter().flat_map(|case| case.rows.iter().map(move |row| of_row(case, row)));
+    print_rows(&COLUMNS, &rows.collect::<Vec<_>>(), format, out)
 }

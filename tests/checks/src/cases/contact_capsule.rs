@@ -42,20 +42,11 @@ fn deploy(rig: &Rig, scene: &Scene, contact: FilmContact) -> Result<(FilmRun, De
 fn record(run: &FilmRun, deployment: &Deployment) -> ContactRecord {
     let (now, audit) = (run.view(), &deployment.audit);
     let peak = deployment.history.column("kinetic_energy").iter().copied().fold(0.0, worse);
-    let accounting = now.accounting();
     ContactRecord {
         passages: audit.passages,
         intersections: audit.intersections,
         residual: audit.ledger_residual,
         unrecovered: unrecovered_contact_energy(&now) / peak,
-        note: format!(
-            "{} elements, {} steps to {:.4} s, {} broad-phase rebuilds, {} collision impulses",
-            deployment.elements,
-            deployment.steps,
-            now.state.time,
-            accounting.broad_phase_rebuilds,
-            accounting.collision_impulses
-        ),
     }
 }
 

@@ -55,7 +55,6 @@ pub struct ContactRecord {
     pub residual: f64,
     /// Unrecovered contact energy over the largest kinetic energy.
     pub unrecovered: f64,
-    pub note: String,
 }
 
 impl ContactRecord {
@@ -65,8 +64,7 @@ impl ContactRecord {
             let counted = counted.map_or(f64::NAN, |counted| counted as f64);
             Row::at_most(&format!("{run}{name}"), counted, 0.0)
         };
-        let passages = row("passages", self.passages).with_note(&self.note);
-        vec![passages, row("intersections", self.intersections)]
+        vec![row("passages", self.passages), row("intersections", self.intersections)]
     }
 
     /// Rows of passages, intersections and ledger residual.
@@ -89,27 +87,19 @@ pub fn run_recorded(
     samples: u32,
     phase: &Phase,
 ) -> Result<ContactRecord> {
-    let (mut found, mut pairs, mut ledgers) = (0, 0, vec![film.view().ledger()]);
+    let (mut found, mut ledgers) = (0, vec![film.view().ledger()]);
     for sample in 1..=samples {
         advance(film, end * f64::from(sample) / f64::from(samples), phase)?;
         found = found.max(intersection_count(&film.view()));
-        let contacts = &film.view().state.contact.contacts;
-        pairs = pairs.max(contacts.iter().filter(|contact| contact.energy > 0.0).count());
         ledgers.push(film.view().ledger());
     }
     let peak = ledgers.iter().map(|ledger| ledger.kinetic).fold(0.0, worse);
-    let residual = residuals(&ledgers).into_iter().fold(0.0, worse);
     let now = film.view();
     Ok(ContactRecord {
         passages: now.passages(),
         intersections: Some(found as u64),
-        residual,
+        residual: residuals(&ledgers).into_iter().fold(0.0, worse),
         unrecovered: unrecovered_contact_energy(&now) / peak,
-        note: format!(
-            "{} steps monitored, at most {pairs} pairs in contact, {} collision impulses; ledger residual {residual:.1e}",
-            now.steps(),
-            now.accounting().collision_impulses
-        ),
     })
 }
 

@@ -44,8 +44,8 @@ fn nodes_of(shell: &Shell) -> u32 {
     u32::try_from(shell.positions.len()).expect("under 2^32 nodes")
 }
 
-/// Mean and largest interlayer pressure between sheet `k` and the next one, Pa.
-fn between(film: &FilmView<'_>, model: &ContactModel, k: u32) -> [f64; 2] {
+/// Mean interlayer pressure between sheet `k` and the next one, Pa.
+fn between(film: &FilmView<'_>, model: &ContactModel, k: u32) -> f64 {
     let each = film.system.model.mass.len() / LAYERS as usize;
     let layer = |node: u32| node as usize / each;
     let mut state = ContactState::default();
@@ -60,8 +60,7 @@ fn between(film: &FilmView<'_>, model: &ContactModel, k: u32) -> [f64; 2] {
     let pressed = model.interlayer_pressure(&film.state.positions, &areas, &state);
     let whole: f64 = areas.iter().sum();
     // Each of the two sheets carries the force once.
-    let force = 0.5 * pressed.mean * pressed.area_fraction * whole;
-    [force / (SIDE * SIDE), pressed.largest]
+    0.5 * pressed.mean * pressed.area_fraction * whole / (SIDE * SIDE)
 }
 
 /// Every interlayer pressure, at three contact distances.
@@ -74,11 +73,10 @@ pub fn stack_of_sheets(rig: &Rig) -> Outcome {
         let run = format!("distance {} mm, ", 1e3 * distance);
         let model = film.view().system.contact.as_ref().ok_or("no contact")?;
         for k in 0..LAYERS - 1 {
-            let [mean, largest] = between(&film.view(), model, k);
+            let mean = between(&film.view(), model, k);
             let (low, high) = (k + 1, k + 2);
             let quantity = format!("{run}sheets {low} and {high}: interlayer pressure, Pa");
-            let note = format!("largest at a node {largest:.0} Pa");
-            judged.push(Row::new(&quantity, mean, pressure, band).with_note(&note));
+            judged.push(Row::new(&quantity, mean, pressure, band));
         }
         judged.extend(record.rows(&run, number("contact/ledger_band")));
     }

@@ -67,25 +67,12 @@ pub fn tube_between_plates(rig: &Rig) -> Outcome {
         let mut film = rig.start(&slice(radius, gap))?;
         let start = film.view().state.volume;
         let record = run_recorded(&mut film, REST, 8, &Phase::default())?;
-        let nodes = 2 * AROUND as usize;
-        let top = film.view().state.positions.y.iter().take(nodes).copied().fold(0.0, f64::max);
         let force_on_plates: f64 =
             film.view().state.contact.plates.iter().map(|plate| 0.5 * plate.force).sum();
         let run = format!("g {gap} m: ");
-        let note = format!(
-            "g is {:.6} m; kinetic energy {:.1e} J",
-            2.0 * top,
-            film.view().kinetic_energy()
-        );
-        judged.push(
-            Row::new(
-                &format!("{run}force per length over p0, N/m/Pa"),
-                force_on_plates / width(radius) / PRESSURE,
-                force,
-                force_band,
-            )
-            .with_note(&note),
-        );
+        let quantity = format!("{run}force per length over p0, N/m/Pa");
+        let of_plates = force_on_plates / width(radius) / PRESSURE;
+        judged.push(Row::new(&quantity, of_plates, force, force_band));
         let share = film.view().state.volume / start;
         judged.push(Row::new(&format!("{run}A/A0"), share, area, area_band));
         judged.extend(record.rows(&run, number("contact/ledger_band")));

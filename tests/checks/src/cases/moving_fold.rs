@@ -148,19 +148,12 @@ pub fn moving_fold(rig: &Rig, cells: u32, share_floors: &str) -> Outcome {
     for (place, length) in lengths.iter().enumerate() {
         for (index, name) in ["energy kept", "coherent share"].into_iter().enumerate() {
             let mut sorted: Vec<f64> = starts.iter().map(|start| start.0[place][index]).collect();
-            // NaN is the first: no median stands for a start that failed.
-            sorted.sort_by(|a, b| b.is_nan().cmp(&a.is_nan()).then(a.total_cmp(b)));
-            let [least, .., most] = sorted[..] else { return Err("no starts".into()) };
-            let median = if least.is_nan() { least } else { sorted[sorted.len() / 2] };
-            let (quantity, floor) =
-                (format!("L/{cells}, l/L {length}: {name}"), floors[index][place]);
-            let row = Row::at_least(&quantity, median, floor);
-            let row = row.with_note(&format!("{least:.3} to {most:.3}"));
-            rows.push(if floor < floors[index][0] {
-                row.with_note(&format!("measured limit: {cells} nodes an arm snap"))
-            } else {
-                row
-            });
+            sorted.sort_by(f64::total_cmp);
+            // No median stands for a start that failed.
+            let failed = sorted.iter().any(|value| value.is_nan());
+            let median = if failed { f64::NAN } else { sorted[sorted.len() / 2] };
+            let quantity = format!("L/{cells}, l/L {length}: {name}");
+            rows.push(Row::at_least(&quantity, median, floors[index][place]));
         }
     }
     let residual = starts.iter().map(|start| start.1).fold(0.0, worse);

@@ -1,4 +1,5 @@
-//! Discs under pressure: two clamped ones, one of compliant film, and two discs joined at the rim.
+//! Discs under pressure: two clamped ones, one of compliant film, and two discs joined at the rim; and two squares joined
+//! at the edge.
 //!
 //! The pressure on a clamped disc follows its surface. N0 is a nominal force, per reference width.
 //!
@@ -6,8 +7,11 @@
 //! shortens by a quarter, so the mesh lies along the meridians. The reference is the shape of
 //! revolution. It is an equilibrium but not the one of least energy: a rim with deep dents encloses
 //! more volume. A mesh of six sectors, oblique to the meridians, finds such dented states.
+//!
+//! The mesh of the squares is a quarter of the upper one between planes of symmetry. The seam stays in z = 0 and is free
+//! in it. There are several close minima of energy: the potential energy shows which one is found, and lower is better.
 
-use billow_solver::geometry::shapes::disc;
+use billow_solver::geometry::shapes::{disc, grid, nodes_where};
 
 use super::prelude::*;
 use super::shapes::{disc_rim, radial_disc};
@@ -81,4 +85,42 @@ pub fn mylar_balloon(rig: &Rig) -> Outcome {
             Ok([rim / radius, 2.0 * pole.z / radius, 2.0 * state.volume / cube])
         })
     })
+}
+
+/// A quarter of the upper sheet.
+fn quarter(cells: u32) -> FilmScene {
+    let [youngs_modulus, poisson_ratio, thickness, pressure] =
+        entry("square_airbag", ["youngs_modulus", "poisson_ratio", "thickness", "overpressure"]);
+    let side = 0.5 * number("square_airbag/diagonal") / 2.0_f64.sqrt();
+    let film = Film { youngs_modulus, poisson_ratio, thickness, ..Film::PAPER_ELASTIC };
+    let shell = grid(cells, cells, side, side);
+    let seam = nodes_where(&shell, |x| x.x >= side || x.y >= side);
+    let supports = vec![
+        held(nodes_where(&shell, |x| x.x <= 0.0), "x"),
+        held(nodes_where(&shell, |x| x.y <= 0.0), "y"),
+        held(seam, "z"),
+    ];
+    let filling = Filling::Pressure(pressure);
+    FilmScene { filling, supports, ..free_film(shell, film) }
+}
+
+/// Energy, height and volume on three meshes.
+pub fn square_airbag(rig: &Rig) -> Outcome {
+    let [volume, energy_band, height_band, volume_band] =
+        entry("square_airbag", ["volume", "energy_band", "height_band", "volume_band"]);
+    let (mut judged, mut whole_volume) = (Vec::new(), f64::NAN);
+    for (cells, row) in [16, 32, 64].into_iter().zip(rows("square_airbag")) {
+        let state = equilibrium(rig, &quarter(cells), None)?;
+        let name = |what: &str| format!("{what}, {cells} cells");
+        let (energy, height) = (state.potential_energy, state.positions.z[0]);
+        let excess = name("potential energy minus reference, J");
+        judged.push(Row::at_most(&excess, energy - row[1], energy_band));
+        let difference = name("w_M, difference to reference, m");
+        judged.push(Row::at_most(&difference, (height - row[2]).abs(), height_band));
+        whole_volume = 8.0 * state.volume;
+    }
+    let difference = (whole_volume - volume).abs();
+    let quantity = "volume, difference to reference, finest mesh, m3";
+    judged.push(Row::at_most(quantity, difference, volume_band));
+    Ok(judged)
 }

@@ -1,10 +1,9 @@
 //! `billow-checks converge`: to what each measure tends as the mesh is refined, and the table of mesh errors.
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use billow_study::accuracy::PROMISED;
-use billow_study::cli::Format;
 use billow_study::cli::options::ResultsOption;
 use billow_study::cli::print::print_rows;
 use billow_study::cli::results::{self, StudyArgs};
@@ -12,25 +11,12 @@ use billow_study::input::value::Value;
 use billow_study::job::row::ColumnId;
 use billow_study::platform::error::{Error, Result};
 use billow_study::platform::files::{Disk, disk_error, write_output};
-use billow_study::platform::output;
 
 use super::calibrate::calibrate;
-use super::fit::{ORDERS, fit};
+use super::fit::fit;
 use super::limit::levels;
 use super::runs::{SceneRuns, by_scene};
 use crate::output::Options;
-
-/// Measures that are looked at beside the promised ones.
-const MEASURES: [ColumnId; 8] = [
-    ColumnId::T50Volume,
-    ColumnId::T90Volume,
-    ColumnId::TDeployed,
-    ColumnId::FirstPeakZRim,
-    ColumnId::FilmStress99,
-    ColumnId::FinalPressure,
-    ColumnId::VolumeRatio,
-    ColumnId::HeightRatio,
-];
 
 /// Arguments of `billow-checks converge`.
 #[derive(Debug, clap::Args)]
@@ -70,39 +56,29 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         let value = names.join(", ");
         return Err(Error::invalid_option("study", &value, "has no series of meshes", allowed, ""));
     }
-    let format = args.options.format();
-    print_rows(&COLUMNS, &rows, format, out)?;
-    if format == Format::Table {
-        args.options.note(&format!(
-            "{} scenes; limit: of the fit f0 + a h^order, h = 1/n, order from {} to {}; change: limit over the finest \
-             value, minus 1; uncertainty: 95 %, of the limit",
-            scenes.len(),
-            ORDERS[0],
-            ORDERS[1]
-        ));
-    }
-    match &args.table {
-        Some(path) => write_table(&scenes, names, args.reference, path),
-        None => Ok(()),
-    }
+    print_rows(&COLUMNS, &rows, args.options.format(), out)?;
+    let Some(path) = &args.table else { return Ok(()) };
+    let Some(table) = calibrate(&scenes, names, args.reference) else {
+        let allowed = "the subdivisions of a mesh that a run of these results has";
+        let value = args.reference.to_string();
+        let problem = "no scene has this mesh";
+        return Err(Error::invalid_option("--reference", &value, problem, allowed, ""));
+    };
+    let text = serde_json::to_string_pretty(&table).unwrap_or_default() + "\n";
+    write_output(&Disk, path, text.as_bytes()).map_err(|error| disk_error(path, &error))?;
+    let errors = table.errors.all();
+    let scenes = errors.iter().map(|entry| entry.scenes).max().unwrap_or(0);
+    let path = path.display();
+    args.options.note(&format!("{path}: {} errors, of up to {scenes} scenes", errors.len()));
+    Ok(())
 }
 
-const COLUMNS: [&str; 10] = [
-    "scene",
-    "measure",
-    "unit",
-    "meshes",
-    "finest",
-    "limit",
-    "change",
-    "uncertainty",
-    "order",
-    "trend",
-];
+const COLUMNS: [&str; 9] =
+    ["scene", "measure", "unit", "meshes", "finest", "limit", "change", "uncertainty", "order"];
 
 /// The rows of a scene: one per measure that has values on at least four meshes.
 fn rows(scene: &SceneRuns) -> Vec<Vec<Value>> {
-    let measures = PROMISED.iter().map(|promised| promised.measure).chain(MEASURES);
+    let measures = PROMISED.iter().map(|promised| promised.measure);
     let row = |measure: ColumnId| {
         let levels = levels(scene, measure);
         let fit = fit(&levels)?;
@@ -124,32 +100,7 @@ fn rows(scene: &SceneRuns) -> Vec<Vec<Value>> {
             relative(fit.limit - last.value),
             relative(fit.uncertainty),
             fit.order.into(),
-            if has_limit { "limit" } else { "no limit known" }.into(),
         ])
     };
     measures.filter_map(row).collect()
-}
-
-fn write_table(
-    scenes: &[SceneRuns],
-    names: Vec<String>,
-    reference: u32,
-    path: &Path,
-) -> Result<()> {
-    let Some(table) = calibrate(scenes, names, reference) else {
-        let allowed = "the subdivisions of a mesh that a run of these results has";
-        let value = reference.to_string();
-        let problem = "no scene has this mesh";
-        return Err(Error::invalid_option("--reference", &value, problem, allowed, ""));
-    };
-    let mut text = serde_json::to_string_pretty(&table).unwrap_or_default();
-    text.push('\n');
-    write_output(&Disk, path, text.as_bytes()).map_err(|error| disk_error(path, &error))?;
-    let scenes = table.errors.all().iter().map(|entry| entry.scenes).max().unwrap_or(0);
-    output::message(format_args!(
-        "{}: {} errors, of up to {scenes} scenes",
-        path.display(),
-        table.errors.all().len()
-    ));
-    Ok(())
 }

@@ -12,7 +12,7 @@
 //! The perturbations are the same in each call.
 
 /// Smallest and largest order of a fit. Below the smallest, f₀ is not determined by meshes that differ tenfold.
-pub(super) const ORDERS: [f64; 2] = [0.5, 2.0];
+const ORDERS: [f64; 2] = [0.5, 2.0];
 /// Steps of the order between them.
 const ORDER_STEPS: u32 = 60;
 /// How far the order of a fit of perturbed values may be from that of the values. Chosen: a wider range lets noise
