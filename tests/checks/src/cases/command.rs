@@ -66,18 +66,7 @@ pub fn verdict(judged: &[Judged]) -> Result<()> {
 }
 
 /// Columns of the output. `seconds` is the time of the whole case.
-const COLUMNS: [&str; 10] = [
-    "case",
-    "quantity",
-    "value",
-    "reference",
-    "error",
-    "order",
-    "tolerance",
-    "pass",
-    "seconds",
-    "note",
-];
+const COLUMNS: &str = "case,quantity,value,reference,error,order,tolerance,pass,seconds,note";
 
 /// Prints one row per quantity of the cases.
 pub fn print(judged: &[Judged], format: Format, out: &mut dyn Write) -> Result<()> {
@@ -97,5 +86,6 @@ pub fn print(judged: &[Judged], format: Format, out: &mut dyn Write) -> Result<(
         ]
     };
     let rows = judged.iter().flat_map(|case| case.rows.iter().map(move |row| of_row(case, row)));
-    print_rows(&COLUMNS, &rows.collect::<Vec<_>>(), format, out)
+    let columns: Vec<&str> = COLUMNS.split(',').collect();
+    print_rows(&columns, &rows.collect::<Vec<_>>(), format, out)
 }

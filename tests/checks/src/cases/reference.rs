@@ -2,6 +2,7 @@
 
 use std::sync::LazyLock;
 
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 static FILES: LazyLock<[Value; 5]> = LazyLock::new(|| {
@@ -22,9 +23,14 @@ fn find(path: &str) -> &'static Value {
     found.unwrap_or_else(|| panic!("no {path} in tests/reference"))
 }
 
+fn read<T: DeserializeOwned>(path: &str) -> T {
+    let read = T::deserialize(find(path));
+    read.unwrap_or_else(|error| panic!("{path} in tests/reference: {error}"))
+}
+
 /// A number by its path.
 pub fn number(path: &str) -> f64 {
-    find(path).as_f64().unwrap_or_else(|| panic!("{path} in tests/reference is not a number"))
+    read(path)
 }
 
 /// The numbers of these keys of an entry.
@@ -34,16 +40,10 @@ pub fn entry<const N: usize>(path: &str, keys: [&str; N]) -> [f64; N] {
 
 /// The rows of a table, `path/rows`.
 pub fn rows(path: &str) -> Vec<Vec<f64>> {
-    let rows = find(&format!("{path}/rows")).as_array();
-    let numbers =
-        |row: &Value| -> Option<Vec<f64>> { row.as_array()?.iter().map(Value::as_f64).collect() };
-    let rows: Option<Vec<Vec<f64>>> = rows.and_then(|rows| rows.iter().map(numbers).collect());
-    rows.unwrap_or_else(|| panic!("{path}/rows in tests/reference is not numeric"))
+    read(&format!("{path}/rows"))
 }
 
 /// A list of numbers by its path.
 pub fn numbers(path: &str) -> Vec<f64> {
-    let list: Option<Vec<f64>> =
-        find(path).as_array().and_then(|list| list.iter().map(Value::as_f64).collect());
-    list.unwrap_or_else(|| panic!("{path} in tests/reference is not numeric"))
+    read(path)
 }

@@ -21,7 +21,7 @@ pub struct Row {
     pub order: Option<f64>,
     /// Whether the error is in band and the order is high enough.
     pub pass: bool,
-    /// Reason for a failure, and further information for the reader.
+    /// Reason for a failure; empty for a row that passes.
     pub note: String,
 }
 
@@ -53,7 +53,7 @@ impl Row {
     pub fn within(quantity: &str, value: f64, from: f64, to: f64) -> Self {
         let middle = 0.5 * (from + to);
         let half = 0.5 * (to - from) / middle;
-        Self::new(quantity, value, middle, half).with_note(&format!("allowed: {from} to {to}"))
+        Self::new(quantity, value, middle, half)
     }
 
     fn judged(quantity: &str, value: f64, reference: Option<f64>, error: f64, band: f64) -> Self {
@@ -88,18 +88,8 @@ impl Row {
         self.with_order(order)
     }
 
-    /// With one more note.
-    #[must_use]
-    pub fn with_note(mut self, note: &str) -> Self {
-        if !self.note.is_empty() {
-            self.note.push_str("; ");
-        }
-        self.note.push_str(note);
-        self
-    }
-
-    /// The value of the finest of three steps or meshes, each half of the one before, and the errors of all. With `least`,
-    /// both observed orders must be that or more; otherwise the last one is reported.
+    /// The value of the finest of three steps or meshes, each half of the one before. With `least`, both observed orders
+    /// must be that or more; otherwise the last one is reported.
     pub fn refined(
         quantity: &str,
         values: [f64; 3],
@@ -110,17 +100,10 @@ impl Row {
         let errors = values.map(|value| value / reference - 1.0);
         let last = order(errors[1], errors[2]);
         let row = Self::new(quantity, values[2], reference, band);
-        let row = match least {
+        match least {
             Some(least) => row.with_least_order(order(errors[0], errors[1]).min(last), least),
             None => row.with_order(last),
-        };
-        row.with_errors(errors)
-    }
-
-    /// With the signed errors of three steps or meshes as a note.
-    #[must_use]
-    pub fn with_errors(self, [a, b, c]: [f64; 3]) -> Self {
-        self.with_note(&format!("errors {a:.2e} {b:.2e} {c:.2e}"))
+        }
     }
 }
 

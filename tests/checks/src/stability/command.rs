@@ -17,22 +17,9 @@ use super::picture;
 use crate::cases::Rig;
 use crate::output::{Options, chosen};
 
-/// Columns of the file of cells.
-const CELLS: [&str; 11] = [
-    "map",
-    "method",
-    "x",
-    "y",
-    "status",
-    "expected",
-    "as_expected",
-    "time",
-    "audit",
-    "ledger_residual",
-    "steps",
-];
-/// Columns of the borders.
-const BORDERS: [&str; 7] = ["map", "method", "at", "along", "border", "status", "of_theory"];
+/// Columns of the file of cells, and of the borders.
+const CELLS: &str = "map,method,x,y,status,expected,as_expected,time,audit,ledger_residual,steps";
+const BORDERS: &str = "map,method,at,along,border,status,of_theory";
 
 /// Arguments of `billow-checks stability`.
 #[derive(Debug, clap::Args)]
@@ -82,14 +69,13 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         wrong.extend(wrong_cells.map(|placed| unexpected(map, placed)));
         write(&format!("{}.svg", map.name), picture::of_map(&finished).as_bytes())?;
     }
-    for (name, columns, rows) in
-        [("cells.csv", &CELLS[..], &cells), ("borders.csv", &BORDERS[..], &borders)]
+    for (name, columns, rows) in [("cells.csv", CELLS, &cells), ("borders.csv", BORDERS, &borders)]
     {
         let mut text = Vec::new();
-        print_rows(columns, rows, Format::Csv, &mut text)?;
+        print(columns, rows, Format::Csv, &mut text)?;
         write(name, &text)?;
     }
-    print_rows(&BORDERS, &borders, args.options.format(), out)?;
+    print(BORDERS, &borders, args.options.format(), out)?;
     match wrong.as_slice() {
         [] => Ok(()),
         all => Err(Error::JobsFailed(format!(
@@ -98,6 +84,10 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             all.join("\n  ")
         ))),
     }
+}
+
+fn print(columns: &str, rows: &[Vec<Value>], format: Format, out: &mut dyn Write) -> Result<()> {
+    print_rows(&columns.split(',').collect::<Vec<_>>(), rows, format, out)
 }
 
 fn border_row(map: &Map, border: &Border) -> Vec<Value> {

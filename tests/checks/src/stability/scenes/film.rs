@@ -2,15 +2,18 @@
 //!
 //! ```text
 //! sheet: small motion in its plane, linear:  Δt = 2/ω_max (√(1+ζ²) − ζ)
-//!        ω_max of the assembled stiffness, by power iteration
+//!        ω_max²: largest eigenvalue of M⁻¹K, by power iteration; K from differences of the forces
 //! ```
 
+use billow_solver::geometry::field::Field;
 use billow_solver::integrators::SimulationSettings;
 use billow_solver::mechanics::film_model::FilmModel;
+use billow_solver::mechanics::forces::membrane::{
+    ElementHistory, NodeForces, assemble_conservative,
+};
 use billow_solver::models::film::Rings;
 use billow_solver::scene::paper::TEMPERATURE;
 
-use super::stiffness::fastest_mode;
 use super::{
     Build, CONTACT_STIFFNESS, DAMPING, MODULUS, Parameter, Prepared, STEP, StabilityScene,
     THICKNESS, Values, compression, parameter,
@@ -28,6 +31,8 @@ const MOST_STEPS: f64 = 1e7;
 const SIZE: [f64; 2] = [0.2, 0.15];
 /// Speed of its motion, m/s. Chosen: strains of 1e-6, far above rounding and far below what is not linear.
 const SPEED: f64 = 1e-3;
+/// Amplitude of the differences that give its stiffness, m. Chosen: strains of 1e-6, as [`SPEED`].
+const AMPLITUDE: f64 = 1e-7;
 /// Steps of its run. Chosen: a step 0.1 % too long multiplies the motion by 1e100.
 const STEPS: f64 = 3000.0;
 /// Radius of the erected bag, m.
@@ -124,7 +129,7 @@ fn free_sheet(rig: &Rig, kind: IntegratorKind, values: &Values) -> Result<Prepar
     let model = FilmModel::of_shell(&film, &flat)?.with_stiffness(&factors);
     let (compression, slack) = (film.compression, values.get("slack"));
     let linear = compression.to_bits() == 1.0_f64.to_bits() && slack.to_bits() == 0;
-    let omega = linear.then(|| fastest_mode(&flat, &film, &model));
+    let omega = linear.then(|| fastest_mode(rig, &flat, &model));
     let shell = moved(flat, |x| x * (1.0 - slack));
     let kick = |kick: &Vector3<f64>| Vector3::new(kick.x, kick.y, 0.0) * SPEED;
     let velocities = pseudo_random(shell.positions.len(), 4).iter().map(kick).collect();
@@ -132,6 +137,28 @@ fn free_sheet(rig: &Rig, kind: IntegratorKind, values: &Values) -> Result<Prepar
     scene.solver.end_time = STEPS * values.get("step") * stable_step(rig, &scene)?;
     let (run, timeline) = prepared(rig, scene, kind, values, &factors, None)?;
     Ok(Prepared::Film(Box::new(run), timeline, omega))
+}
+
+/// ω of the fastest mode in the plane of flat film at rest, rad/s.
+fn fastest_mode(rig: &Rig, shell: &Shell, model: &FilmModel) -> f64 {
+    let force = |mode: &[Vector3<f64>], amplitude: f64| {
+        let moved = shell.positions.iter().zip(mode).map(|(x, mode)| x + mode * amplitude);
+        let positions = Field::of(&moved.collect::<Vec<_>>());
+        let (histories, mut nodes) = (&mut ElementHistory::zero(model), NodeForces::new(model));
+        assemble_conservative(rig.instruction_set, model, &positions, &[], histories, &mut nodes);
+        nodes.films()
+    };
+    let norm = |mode: &[Vector3<f64>]| mode.iter().map(Vector3::norm_squared).sum::<f64>().sqrt();
+    let (mut mode, mut value) = (pseudo_random(shell.positions.len(), 1), 0.0);
+    for _ in 0..4000 {
+        let scale = norm(&mode);
+        mode.iter_mut().for_each(|x| *x = Vector3::new(x.x, x.y, 0.0) / scale);
+        let (low, high) = (force(&mode, -AMPLITUDE), force(&mode, AMPLITUDE));
+        let next = low.iter().zip(high.iter()).zip(&model.mass);
+        mode = next.map(|((low, high), mass)| (low - high) / (2.0 * AMPLITUDE * mass)).collect();
+        value = norm(&mode);
+    }
+    value.sqrt()
 }
 
 /// The shell of a bag, flattened. The reference of its film is the sphere.

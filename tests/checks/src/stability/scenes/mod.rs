@@ -10,7 +10,6 @@ use crate::cases::prelude::*;
 
 mod capsule;
 mod film;
-mod stiffness;
 mod vessel;
 
 /// A parameter of a scene.
