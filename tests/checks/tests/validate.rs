@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use billow_checks::cases::{CASES, Rig, Tier, command};
+use billow_checks::cases::{CASES, Rig, command};
 use billow_solver::platform::fault_injection::{Fault, Term};
 use billow_study::cli::Format;
 use billow_study::platform::exit_code::Exit;
@@ -32,7 +32,7 @@ fn rows_are_in_table_order_and_quick_skips_long_cases() {
     assert!(piston["order"].as_f64() >= Some(1.9), "{piston}");
     assert!(error.contains("skipped by --quick: released_sphere"), "{error}");
     assert!(error.contains("3/3 "), "{error}");
-    assert!(CASES.iter().any(|case| case.name == "released_sphere" && case.tier == Tier::Long));
+    assert!(CASES.iter().any(|case| case.name == "released_sphere" && case.long));
 }
 
 #[test]

@@ -9,7 +9,7 @@ use billow_study::cli::print::print_rows;
 use billow_study::input::value::Value;
 use billow_study::platform::error::{Error, Result};
 
-use super::{CASES, Case, Judged, Rig, Row, Tier, run_all};
+use super::{CASES, Case, Judged, Rig, Row, run_all};
 use crate::output::{Options, chosen};
 
 /// Arguments of `billow-checks validate`.
@@ -30,7 +30,7 @@ pub struct Args {
 /// Runs `billow-checks validate`.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let chosen = chosen("--case", &args.cases, CASES, |case| case.name)?;
-    let skip = |case: &&Case| args.quick && case.tier == Tier::Long;
+    let skip = |case: &&Case| args.quick && case.long;
     let (skipped, cases): (Vec<&Case>, Vec<&Case>) = chosen.into_iter().partition(skip);
     let rig = Rig::selected()?;
     let pool = args.threads.pool()?;

@@ -15,6 +15,7 @@ use billow_solver::scene::DEFAULT_CFL;
 use billow_solver::scene::monitor_settings::MonitorSettings;
 
 use super::contact_rig::{ContactRecord, unrecovered_contact_energy};
+use super::oscillation::when;
 use super::prelude::*;
 use super::rig::stopped;
 
@@ -89,14 +90,6 @@ pub(super) fn every_step(rig: &Rig, subdivisions: u32) -> Outcome {
     Ok(judged)
 }
 
-/// When a series first reaches a level, linear between samples; NaN if it never does.
-fn first_time_at(time: &[f64], series: &[f64], level: f64) -> f64 {
-    let Some(next) = series.iter().position(|value| *value >= level) else { return f64::NAN };
-    let Some(last) = next.checked_sub(1) else { return time[0] };
-    let fraction = (level - series[last]) / (series[next] - series[last]);
-    time[last] + fraction * (time[next] - time[last])
-}
-
 /// A row whose value must lie between the reference numbers `entry/from` and `entry/to`.
 fn between(quantity: &str, value: f64, entry: &str) -> Row {
     let [from, to] = ["from", "to"].map(|key| number(&format!("capsule_deployed/{entry}/{key}")));
@@ -112,7 +105,8 @@ pub(super) fn deployed(rig: &Rig, subdivisions: u32) -> Outcome {
     let mut judged = Vec::new();
     for entry in ["half_way", "far"] {
         let level = number(&format!("capsule_deployed/{entry}/height"));
-        let time = first_time_at(column("time"), column("z_centre"), level);
+        let samples = column("z_centre").iter().copied().zip(column("time").iter().copied());
+        let time = when(&samples.collect::<Vec<_>>(), level);
         judged.push(between(&format!("time when z_centre reaches {level} m, s"), time, entry));
     }
     judged.push(between("peak vz of the top ring, m/s", largest("vz"), "peak_speed"));

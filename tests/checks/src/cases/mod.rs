@@ -48,15 +48,6 @@ mod storeys_model;
 pub use rig::Rig;
 pub use row::Row;
 
-/// Whether a case is part of `--quick`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Tier {
-    /// Always run.
-    Quick,
-    /// Skipped with `--quick`.
-    Long,
-}
-
 /// A result, or the reason why there is none.
 pub type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
@@ -69,17 +60,17 @@ pub struct Case {
     /// Its name.
     pub name: &'static str,
     /// Whether `--quick` skips it.
-    pub tier: Tier,
+    pub long: bool,
     /// The function that runs it.
     pub body: fn(&Rig) -> Outcome,
 }
 
 const fn quick(name: &'static str, body: fn(&Rig) -> Outcome) -> Case {
-    Case { name, tier: Tier::Quick, body }
+    Case { name, long: false, body }
 }
 
 const fn long(name: &'static str, body: fn(&Rig) -> Outcome) -> Case {
-    Case { name, tier: Tier::Long, body }
+    Case { name, long: true, body }
 }
 
 /// Every case, in the order of the output.

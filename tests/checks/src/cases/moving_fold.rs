@@ -17,6 +17,7 @@
 use billow_solver::geometry::shapes::crossed_grid;
 use billow_solver::output::ledger::{Ledger, residuals};
 
+use super::oscillation::when;
 use super::prelude::*;
 
 /// Length of an arm over the width of the strip.
@@ -88,16 +89,6 @@ fn folded(cells: u32, seed: u64) -> FilmScene {
 /// Time (s), l/L and energy ledger of a strip that unrolls.
 type Sample = (f64, f64, Ledger);
 
-/// A value when l/L first falls to `length`, linear between samples; NaN if it does not.
-fn when(samples: &[Sample], length: f64, value: impl Fn(&Sample) -> f64) -> f64 {
-    let pair = samples.windows(2).find(|pair| pair[1].1 <= length);
-    pair.map_or(f64::NAN, |pair| {
-        let fraction = (length - pair[0].1) / (pair[1].1 - pair[0].1);
-        let [from, to] = [value(&pair[0]), value(&pair[1])];
-        from + fraction * (to - from)
-    })
-}
-
 /// Energy kept and coherent share of one start at each of these l/L, and the largest residual of its energy ledger.
 fn unrolled(rig: &Rig, cells: u32, seed: u64, lengths: &[f64]) -> Result<(Vec<[f64; 2]>, f64)> {
     let arm = size("arm");
@@ -125,9 +116,12 @@ fn unrolled(rig: &Rig, cells: u32, seed: u64, lengths: &[f64]) -> Result<(Vec<[f
     let kinetic = samples[0].2.kinetic;
     let mass = scene.film.area_density() * width() * arm;
     let found = lengths.iter().map(|length| {
-        let kept = when(&samples, *length, |sample| sample.2.kinetic) / kinetic;
-        let [from, to] = [HALF_WINDOW, -HALF_WINDOW]
-            .map(|offset| when(&samples, length + offset, |sample| sample.0));
+        let series = |of: fn(&Sample) -> f64| -> Vec<(f64, f64)> {
+            samples.iter().map(|sample| (sample.1, of(sample))).collect()
+        };
+        let kept = when(&series(|sample| sample.2.kinetic), *length) / kinetic;
+        let time = series(|sample| sample.0);
+        let [from, to] = [HALF_WINDOW, -HALF_WINDOW].map(|offset| when(&time, length + offset));
         // v/L = 2 Δ(l/L)/Δt.
         let speed = 4.0 * HALF_WINDOW / (to - from);
         [kept, 0.5 * mass * arm * arm / kinetic * length * speed * speed]

@@ -1,4 +1,4 @@
-//! Frequency and extrema of an oscillation.
+//! Frequency and extrema of an oscillation, and when a series reaches a level.
 
 use super::prelude::*;
 
@@ -34,6 +34,15 @@ pub fn frequency(
         film.view().state.time
     )
     .into())
+}
+
+/// The second quantity when the first one reaches a level, linear between samples; NaN if it does not.
+pub fn when(samples: &[(f64, f64)], level: f64) -> f64 {
+    let pair = samples.windows(2).find(|pair| (pair[0].0 - level) * (pair[1].0 - level) <= 0.0);
+    pair.map_or(f64::NAN, |pair| {
+        let fraction = (level - pair[0].0) / (pair[1].0 - pair[0].0);
+        pair[0].1 + fraction * (pair[1].1 - pair[0].1)
+    })
 }
 
 /// An extremum of a signal.

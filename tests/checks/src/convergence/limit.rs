@@ -55,15 +55,6 @@ pub(super) fn limit(scenes: &[&SceneRuns], measure: ColumnId, reference: u32) ->
 
 /// The medians of a measure by mesh, coarsest first: those of which a limit can follow.
 pub(super) fn levels(scene: &SceneRuns, measure: ColumnId) -> Vec<Level> {
-    let mut levels = all_levels(scene, measure);
-    let fine = levels.iter().filter(|level| level.subdivisions >= COARSEST_OF_LIMIT).count();
-    if fine >= LIMIT_MESHES {
-        levels.retain(|level| level.subdivisions >= COARSEST_OF_LIMIT);
-    }
-    levels
-}
-
-fn all_levels(scene: &SceneRuns, measure: ColumnId) -> Vec<Level> {
     let mut values: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
     for run in &scene.runs {
         if let ((ModelKind::Film, n), Some(value)) = (run.mesh(), run.measure(measure)) {
@@ -71,20 +62,21 @@ fn all_levels(scene: &SceneRuns, measure: ColumnId) -> Vec<Level> {
         }
     }
     // Where a mesh has one run, the spread is that of the meshes with several.
-    let half_range = |values: &Vec<f64>| {
-        Spread::of(values.iter().copied())
-            .filter(|spread| spread.count > 1)
-            .map(|spread| 0.5 * (spread.largest - spread.least))
-    };
-    let typical =
-        Spread::of(values.values().filter_map(half_range)).map_or(0.0, |spread| spread.median);
-    values
-        .iter()
-        .filter_map(|(n, values)| {
-            let spread = Spread::of(values.iter().copied())?;
-            let half_range = half_range(values).unwrap_or(typical);
-            let noise = half_range / (spread.count as f64).sqrt();
-            Some(Level { subdivisions: *n, value: spread.median, noise, runs: spread.count })
-        })
-        .collect()
+    let spreads: Vec<(u32, Spread)> =
+        values.into_iter().filter_map(|(n, values)| Some((n, Spread::of(values)?))).collect();
+    let half_range = |spread: &Spread| 0.5 * (spread.largest - spread.least);
+    let several = spreads.iter().map(|(_, spread)| spread).filter(|spread| spread.count > 1);
+    let typical = Spread::of(several.map(half_range)).map_or(0.0, |spread| spread.median);
+    let mut levels: Vec<Level> = Vec::new();
+    for (subdivisions, spread) in &spreads {
+        let half_range = if spread.count > 1 { half_range(spread) } else { typical };
+        let noise = half_range / (spread.count as f64).sqrt();
+        let (value, runs) = (spread.median, spread.count);
+        levels.push(Level { subdivisions: *subdivisions, value, noise, runs });
+    }
+    let fine = levels.iter().filter(|level| level.subdivisions >= COARSEST_OF_LIMIT).count();
+    if fine >= LIMIT_MESHES {
+        levels.retain(|level| level.subdivisions >= COARSEST_OF_LIMIT);
+    }
+    levels
 }

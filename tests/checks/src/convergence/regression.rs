@@ -34,61 +34,50 @@ pub(super) fn regression(points: &[Point]) -> Option<Regression> {
         let squares: f64 = points.iter().map(|(u, _)| u[index] * u[index]).sum();
         (squares / points.len() as f64).sqrt()
     });
+    let ratio = |a: f64, scale: f64| if scale > 0.0 { a / scale } else { 0.0 };
+    // 1 and the coordinates z.
+    let row = |(u, y): &Point| -> Row {
+        let z = u.iter().zip(scale).map(|(u, scale)| ratio(*u, scale));
+        (DVector::from_iterator(FEATURES + 1, [1.0].into_iter().chain(z)), *y)
+    };
+    let rows: Vec<Row> = points.iter().map(row).collect();
     let best = PENALTIES
         .into_iter()
-        .filter_map(|penalty| Some((left_out(points, &scale, penalty)?, penalty)))
+        .filter_map(|penalty| Some((left_out(&rows, penalty)?, penalty)))
         .min_by(|a, b| a.0.total_cmp(&b.0));
     let (deviation, penalty) = best?;
-    let (intercept, slopes) = solve(points.iter(), &scale, penalty)?;
-    Some(Regression { intercept, slopes, deviation })
+    let solution = solve(&rows, penalty)?;
+    let slopes = core::array::from_fn(|index| ratio(solution[index + 1], scale[index]));
+    Some(Regression { intercept: solution[0], slopes, deviation })
 }
+
+/// 1 and the scaled coordinates of a scene, and its bias.
+type Row = (DVector<f64>, f64);
 
 /// The deviation of scenes that are left out.
-fn left_out(points: &[Point], scale: &[f64; FEATURES], penalty: f64) -> Option<f64> {
-    if points.len() < 2 {
-        return (points.len() == 1).then_some(0.0);
+fn left_out(rows: &[Row], penalty: f64) -> Option<f64> {
+    if rows.len() < 2 {
+        return (rows.len() == 1).then_some(0.0);
     }
     let mut squares = 0.0;
-    for (index, (u, y)) in points.iter().enumerate() {
-        let others = points.iter().enumerate().filter(|(other, _)| *other != index);
-        let (intercept, slopes) = solve(others.map(|(_, point)| point), scale, penalty)?;
-        let predicted: f64 = intercept + slopes.iter().zip(u).map(|(s, u)| s * u).sum::<f64>();
-        squares += (y - predicted) * (y - predicted);
+    for (index, (z, y)) in rows.iter().enumerate() {
+        let others = [&rows[..index], &rows[index + 1..]].concat();
+        let error = y - solve(&others, penalty)?.dot(z);
+        squares += error * error;
     }
-    Some((squares / points.len() as f64).sqrt())
+    Some((squares / rows.len() as f64).sqrt())
 }
 
-/// Intercept, and slopes of the coordinates u.
-fn solve<'a>(
-    points: impl Iterator<Item = &'a Point>,
-    scale: &[f64; FEATURES],
-    penalty: f64,
-) -> Option<(f64, [f64; FEATURES])> {
-    const SIZE: usize = FEATURES + 1;
-    let mut matrix = DMatrix::zeros(SIZE, SIZE);
-    let mut right = DVector::zeros(SIZE);
-    for (u, y) in points {
-        let z = |index: usize| match index {
-            0 => 1.0,
-            _ if scale[index - 1] > 0.0 => u[index - 1] / scale[index - 1],
-            _ => 0.0,
-        };
-        for row in 0..SIZE {
-            right[row] += z(row) * y;
-            for column in 0..SIZE {
-                matrix[(row, column)] += z(row) * z(column);
-            }
-        }
+/// Intercept, and slopes of the coordinates z.
+fn solve(rows: &[Row], penalty: f64) -> Option<DVector<f64>> {
+    let mut matrix = DMatrix::from_diagonal_element(FEATURES + 1, FEATURES + 1, penalty);
+    matrix[(0, 0)] = 0.0;
+    let mut right = DVector::zeros(FEATURES + 1);
+    for (z, y) in rows {
+        right += z * *y;
+        matrix += z * z.transpose();
     }
-    for index in 1..SIZE {
-        matrix[(index, index)] += penalty;
-    }
-    let solution = matrix.cholesky()?.solve(&right);
-    let slope = |index: usize| match scale[index] {
-        scale if scale > 0.0 => solution[index + 1] / scale,
-        _ => 0.0,
-    };
-    Some((solution[0], core::array::from_fn(slope)))
+    Some(matrix.cholesky()?.solve(&right))
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ const SAMPLES: f64 = 40.0;
 /// needs more.
 const MAX_STEPS: f64 = 50.0;
 /// Most steps of any run. Chosen: minutes of a small scene.
-const MOST_STEPS: f64 = 1e7;
+const MOST_STEPS: u64 = 10_000_000;
 /// Width of the sheet, m, and its height where elements are well shaped.
 const SIZE: [f64; 2] = [0.2, 0.15];
 /// Speed of its motion, m/s. Chosen: strains of 1e-6, far above rounding and far below what is not linear.
@@ -236,7 +236,8 @@ pub(super) fn prepared(
     let end = scene.solver.end_time;
     scene.outputs.sample_interval = end / SAMPLES;
     let shortest = stable_step(rig, &scene)? * step.min(1.0);
-    let step_limit = step_limit(MAX_STEPS * (end / shortest + SAMPLES));
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it saturates")]
+    let step_limit = ((MAX_STEPS * (end / shortest + SAMPLES)) as u64).clamp(1, MOST_STEPS);
     scene.solver.integrator = kind;
     scene.solver.cfl = step.min(1.0);
     let film = capsule::start(&rig.on_instruction_set(&scene), &[])?;
@@ -250,18 +251,4 @@ pub(super) fn prepared(
     let settings = SimulationSettings { cfl: step, step_limit, ..settings };
     let film = FilmSimulation::new(system, settings, state.positions, state.velocities, state.gas);
     Ok((FilmRun::with(film, &scene, rings), Timeline::of_film(&scene)))
-}
-
-/// A count of steps; [`MOST_STEPS`] where the stable step is not a number.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "within 1 to MOST_STEPS"
-)]
-fn step_limit(steps: f64) -> u64 {
-    if steps.is_finite() {
-        libm::ceil(steps).clamp(1.0, MOST_STEPS) as u64
-    } else {
-        MOST_STEPS as u64
-    }
 }
