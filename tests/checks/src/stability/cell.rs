@@ -59,7 +59,7 @@ pub(super) fn run(rig: &Rig, scene: &StabilityScene, method: Method, values: &Va
 }
 
 fn answer(rig: &Rig, scene: &StabilityScene, method: Method, values: &Values) -> Result<Cell> {
-    match scene.prepare(rig, method, values)? {
+    match (scene.prepare)(rig, method, values)? {
         Prepared::Film(mut film, timeline, omega) => {
             let start = film.view().ledger();
             let step = film.view().next_step() / film.film.settings().cfl;

@@ -185,7 +185,7 @@ fn scene<'de, D: Deserializer<'de>>(from: D) -> Read<&'static StabilityScene, D:
 fn methods<'de, D: Deserializer<'de>>(from: D) -> Read<Vec<Method>, D::Error> {
     let mut methods = Vec::new();
     for name in Vec::<String>::deserialize(from)? {
-        let is_film = |method: &Method| name == "film" && matches!(method, Method::Film(_));
+        let is_film = |method: &Method| name == "film" && method.is_film();
         let known = methods.len();
         methods.extend(Method::all().filter(|method| method.name() == name || is_film(method)));
         if methods.len() == known {

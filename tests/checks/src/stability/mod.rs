@@ -41,6 +41,10 @@ impl Method {
         film.into_iter().chain([Self::Piston, Self::Storeys, Self::Statics])
     }
 
+    fn is_film(self) -> bool {
+        matches!(self, Self::Film(_))
+    }
+
     /// Name, as in a map file.
     fn name(self) -> &'static str {
         match self {

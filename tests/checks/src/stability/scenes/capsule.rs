@@ -6,8 +6,8 @@ use billow_solver::scene::monitor_settings::MonitorSettings;
 
 use super::film::prepared;
 use super::{
-    Build, CONTACT_STIFFNESS, MODULUS, Parameter, Prepared, STEP, StabilityScene, THICKNESS,
-    Values, compression, parameter,
+    CONTACT_STIFFNESS, MODULUS, Parameter, Prepared, STEP, StabilityScene, THICKNESS, Values,
+    compression, parameter,
 };
 use crate::cases::prelude::*;
 use crate::stability::Method;
@@ -41,7 +41,8 @@ pub(super) const SCENE: StabilityScene = StabilityScene {
         parameter("burst_mass", 1e-4, "kg", "mass of the burst"),
         parameter("fixed_step", 0.0, "s", "fixed step of the model piston; 0: adaptive"),
     ],
-    build: Build::FilmAndModels(build),
+    runs: |method| method != Method::Statics,
+    prepare,
 };
 
 /// The scene as data, without its method.
@@ -64,23 +65,19 @@ fn scene(values: &Values) -> Scene {
     scene
 }
 
-fn build(rig: &Rig, method: Method, values: &Values) -> Result<Prepared> {
+fn prepare(rig: &Rig, method: Method, values: &Values) -> Result<Prepared> {
     let mut scene = scene(values);
     let step = values.get("step");
-    let kind = match method {
-        Method::Film(kind) => kind,
-        Method::Statics => return Err("no statics".into()),
-        Method::Piston | Method::Storeys => {
-            let fixed = values.get("fixed_step");
-            (scene.solver.model, scene.solver.stepping) = match method {
-                Method::Storeys => (ModelKind::Storeys, Stepping::Stable(step)),
-                _ if fixed > 0.0 => (ModelKind::Piston, Stepping::Fixed(fixed)),
-                _ => (ModelKind::Piston, scene.solver.stepping),
-            };
-            scene.solver.step_limit = MODEL_STEPS;
-            return Ok(Prepared::Model(Box::new(scene)));
-        }
-    };
+    if !method.is_film() {
+        let fixed = values.get("fixed_step");
+        (scene.solver.model, scene.solver.stepping) = match method {
+            Method::Storeys => (ModelKind::Storeys, Stepping::Stable(step)),
+            _ if fixed > 0.0 => (ModelKind::Piston, Stepping::Fixed(fixed)),
+            _ => (ModelKind::Piston, scene.solver.stepping),
+        };
+        scene.solver.step_limit = MODEL_STEPS;
+        return Ok(Prepared::Model(Box::new(scene)));
+    }
     scene.solver.model = ModelKind::Film;
     // The step of the values is set later: a scene has a CFL number of its range.
     let (height, cfl) = (scene.design.stowed_height, step.min(1.0));
@@ -91,6 +88,5 @@ fn build(rig: &Rig, method: Method, values: &Values) -> Result<Prepared> {
     let contact = FilmContact { monitor, ..FilmContact::of(&scene.contact) };
     let contact = capsule::resolved_contact(contact, &scene.design)?;
     let film = FilmScene { contact: Some(contact), ..film };
-    let (run, timeline) = prepared(rig, film, kind, values, &[], Some(Rings::of(&mesh, height)))?;
-    Ok(Prepared::Film(Box::new(run), timeline, None))
+    prepared(rig, film, method, values, &[], Some(Rings::of(&mesh, height)), None)
 }

@@ -15,10 +15,11 @@ use billow_solver::models::film::Rings;
 use billow_solver::scene::paper::TEMPERATURE;
 
 use super::{
-    Build, CONTACT_STIFFNESS, DAMPING, MODULUS, Parameter, Prepared, STEP, StabilityScene,
-    THICKNESS, Values, compression, parameter,
+    CONTACT_STIFFNESS, DAMPING, MODULUS, Parameter, Prepared, STEP, StabilityScene, THICKNESS,
+    Values, compression, parameter,
 };
 use crate::cases::prelude::*;
+use crate::stability::Method;
 
 /// Samples of a run.
 const SAMPLES: f64 = 40.0;
@@ -70,7 +71,8 @@ pub(super) const SHEET: StabilityScene = StabilityScene {
         ),
         soft("modulus of the left half of the sheet over that of the right half"),
     ],
-    build: Build::Film(free_sheet),
+    runs: Method::is_film,
+    prepare: free_sheet,
 };
 
 /// The bag.
@@ -90,7 +92,8 @@ pub(super) const BAG: StabilityScene = StabilityScene {
         parameter("burst_steps", 0.0, "stable steps", "length of a burst; 0: none"),
         parameter("burst_mass", 1e-4, "kg", "mass of the burst"),
     ],
-    build: Build::Film(filled_bag),
+    runs: Method::is_film,
+    prepare: filled_bag,
 };
 
 /// Two sheets that collide, every step monitored.
@@ -113,10 +116,11 @@ pub(super) const FILMS: StabilityScene = StabilityScene {
         ),
         soft("modulus of the upper sheet over that of the lower one"),
     ],
-    build: Build::Film(colliding_sheets),
+    runs: Method::is_film,
+    prepare: colliding_sheets,
 };
 
-fn free_sheet(rig: &Rig, kind: IntegratorKind, values: &Values) -> Result<Prepared> {
+fn free_sheet(rig: &Rig, method: Method, values: &Values) -> Result<Prepared> {
     let film = values.film();
     let flat = sheet(4, 3, SIZE[0], SIZE[1] * values.get("sliver"));
     let soft = values.get("soft");
@@ -135,8 +139,7 @@ fn free_sheet(rig: &Rig, kind: IntegratorKind, values: &Values) -> Result<Prepar
     let velocities = pseudo_random(shell.positions.len(), 4).iter().map(kick).collect();
     let mut scene = FilmScene { velocities, ..free_film(shell, film) };
     scene.solver.end_time = STEPS * values.get("step") * stable_step(rig, &scene)?;
-    let (run, timeline) = prepared(rig, scene, kind, values, &factors, None)?;
-    Ok(Prepared::Film(Box::new(run), timeline, omega))
+    prepared(rig, scene, method, values, &factors, None, omega)
 }
 
 /// ω of the fastest mode in the plane of flat film at rest, rad/s.
@@ -168,7 +171,7 @@ pub(super) fn flattened_bag(values: &Values) -> Shell {
     moved(icosphere(values.count("level"), RADIUS), flattened)
 }
 
-fn filled_bag(rig: &Rig, kind: IntegratorKind, values: &Values) -> Result<Prepared> {
+fn filled_bag(rig: &Rig, method: Method, values: &Values) -> Result<Prepared> {
     let shell = flattened_bag(values);
     let volume = shell.volume(|node| shell.positions[node as usize]);
     let nitrogen = nitrogen_supply();
@@ -188,11 +191,10 @@ fn filled_bag(rig: &Rig, kind: IntegratorKind, values: &Values) -> Result<Prepar
             supply.windows.push(burst);
         }
     }
-    let (run, timeline) = prepared(rig, scene, kind, values, &[], None)?;
-    Ok(Prepared::Film(Box::new(run), timeline, None))
+    prepared(rig, scene, method, values, &[], None, None)
 }
 
-fn colliding_sheets(rig: &Rig, kind: IntegratorKind, values: &Values) -> Result<Prepared> {
+fn colliding_sheets(rig: &Rig, method: Method, values: &Values) -> Result<Prepared> {
     let low = sheet(4, 3, 0.2, 0.15);
     let (nodes, elements) = (low.positions.len(), low.triangles.len());
     let rise = Vector3::z() * (values.get("gap") * DISTANCE);
@@ -208,8 +210,7 @@ fn colliding_sheets(rig: &Rig, kind: IntegratorKind, values: &Values) -> Result<
     };
     scene.solver.end_time = FILMS_END;
     let factors = [vec![1.0; elements], vec![values.get("soft"); elements]].concat();
-    let (run, timeline) = prepared(rig, scene, kind, values, &factors, None)?;
-    Ok(Prepared::Film(Box::new(run), timeline, None))
+    prepared(rig, scene, method, values, &factors, None, None)
 }
 
 /// The step that a film of a scene takes at the CFL number 1, s.
@@ -227,11 +228,13 @@ fn stable_step(rig: &Rig, scene: &FilmScene) -> Result<f64> {
 pub(super) fn prepared(
     rig: &Rig,
     mut scene: FilmScene,
-    kind: IntegratorKind,
+    method: Method,
     values: &Values,
     factors: &[f64],
     rings: Option<Rings>,
-) -> Result<(FilmRun, Timeline)> {
+    omega: Option<f64>,
+) -> Result<Prepared> {
+    let Method::Film(kind) = method else { return Err("no integrator of film".into()) };
     let step = values.get("step");
     let end = scene.solver.end_time;
     scene.outputs.sample_interval = end / SAMPLES;
@@ -250,5 +253,6 @@ pub(super) fn prepared(
     }
     let settings = SimulationSettings { cfl: step, step_limit, ..settings };
     let film = FilmSimulation::new(system, settings, state.positions, state.velocities, state.gas);
-    Ok((FilmRun::with(film, &scene, rings), Timeline::of_film(&scene)))
+    let run = Box::new(FilmRun::with(film, &scene, rings));
+    Ok(Prepared::Film(run, Timeline::of_film(&scene), omega))
 }

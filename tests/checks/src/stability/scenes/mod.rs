@@ -109,23 +109,16 @@ pub(super) enum Prepared {
     Statics(Box<FilmSystem>, Field),
 }
 
-/// Which methods can run a scene, and what prepares it for them.
-enum Build {
-    /// Every integrator of film.
-    Film(fn(&Rig, IntegratorKind, &Values) -> Result<Prepared>),
-    /// Every integrator of film, and the models without film.
-    FilmAndModels(fn(&Rig, Method, &Values) -> Result<Prepared>),
-    /// The search for a static equilibrium.
-    Statics(fn(&Rig, &Values) -> Result<Prepared>),
-}
-
 /// A scene of the map.
 pub(super) struct StabilityScene {
     pub(super) name: &'static str,
     /// What it is, one line.
     pub(super) meaning: &'static str,
     pub(super) parameters: &'static [Parameter],
-    build: Build,
+    /// Whether a method can run it.
+    runs: fn(Method) -> bool,
+    /// The scene with a method that can run it, and values.
+    pub(super) prepare: fn(&Rig, Method, &Values) -> Result<Prepared>,
 }
 
 impl StabilityScene {
@@ -136,22 +129,7 @@ impl StabilityScene {
 
     /// The methods that can run it.
     pub(super) fn methods(&self) -> Vec<Method> {
-        let can = |method: &Method| match self.build {
-            Build::Film(_) => matches!(method, Method::Film(_)),
-            Build::FilmAndModels(_) => *method != Method::Statics,
-            Build::Statics(_) => *method == Method::Statics,
-        };
-        Method::all().filter(can).collect()
-    }
-
-    /// The scene with a method and values.
-    pub(super) fn prepare(&self, rig: &Rig, method: Method, values: &Values) -> Result<Prepared> {
-        match (&self.build, method) {
-            (Build::Film(build), Method::Film(kind)) => build(rig, kind, values),
-            (Build::FilmAndModels(build), _) => build(rig, method, values),
-            (Build::Statics(build), Method::Statics) => build(rig, values),
-            _ => Err(format!("{} cannot run the scene {}", method.name(), self.name).into()),
-        }
+        Method::all().filter(|method| (self.runs)(*method)).collect()
     }
 }
 

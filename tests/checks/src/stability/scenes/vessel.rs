@@ -7,9 +7,10 @@ use billow_solver::system::{FilmSystem, PressureLoad};
 
 use super::film::flattened_bag;
 use super::{
-    Build, MODULUS, Parameter, Prepared, StabilityScene, THICKNESS, Values, compression, parameter,
+    MODULUS, Parameter, Prepared, StabilityScene, THICKNESS, Values, compression, parameter,
 };
 use crate::cases::prelude::*;
+use crate::stability::Method;
 
 const OVERPRESSURE: Parameter =
     parameter("overpressure", 100.0, "Pa", "overpressure on the inside");
@@ -26,7 +27,8 @@ pub(super) const BAG: StabilityScene = StabilityScene {
         parameter("flatness", 1.0, "ratio", "height at the start over that of the sphere"),
         OVERPRESSURE,
     ],
-    build: Build::Statics(bag),
+    runs: |method| method == Method::Statics,
+    prepare: bag,
 };
 
 /// The capsule.
@@ -39,10 +41,11 @@ pub(super) const CAPSULE: StabilityScene = StabilityScene {
         parameter("subdivisions", 2.0, "number", "design.subdivisions"),
         OVERPRESSURE,
     ],
-    build: Build::Statics(capsule),
+    runs: |method| method == Method::Statics,
+    prepare: capsule,
 };
 
-fn bag(_: &Rig, values: &Values) -> Result<Prepared> {
+fn bag(_: &Rig, _: Method, values: &Values) -> Result<Prepared> {
     let shell = flattened_bag(values);
     let model = FilmModel::of_shell(&values.film(), &shell)?;
     let load = PressureLoad::Overpressure(values.get("overpressure"));
@@ -50,7 +53,7 @@ fn bag(_: &Rig, values: &Values) -> Result<Prepared> {
     Ok(Prepared::Statics(Box::new(FilmSystem::free(model, load)), positions))
 }
 
-fn capsule(rig: &Rig, values: &Values) -> Result<Prepared> {
+fn capsule(rig: &Rig, _: Method, values: &Values) -> Result<Prepared> {
     let mut scene = paper::empty_capsule(values.count("subdivisions"), 1.0);
     scene.film.thickness = values.get("thickness");
     scene.film.youngs_modulus = values.get("modulus");
