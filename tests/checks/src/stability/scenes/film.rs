@@ -155,7 +155,7 @@ fn fastest_mode(rig: &Rig, shell: &Shell, model: &FilmModel) -> f64 {
     let (mut mode, mut value) = (pseudo_random(shell.positions.len(), 1), 0.0);
     for _ in 0..4000 {
         let scale = norm(&mode);
-        mode.iter_mut().for_each(|x| *x = Vector3::new(x.x, x.y, 0.0) / scale);
+        mode = mode.iter().map(|x| Vector3::new(x.x, x.y, 0.0) / scale).collect();
         let (low, high) = (force(&mode, -AMPLITUDE), force(&mode, AMPLITUDE));
         let next = low.iter().zip(high.iter()).zip(&model.mass);
         mode = next.map(|((low, high), mass)| (low - high) / (2.0 * AMPLITUDE * mass)).collect();
