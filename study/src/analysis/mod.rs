@@ -7,3 +7,6 @@ pub mod replicates;
 pub mod statistics;
 mod values;
 pub mod work_precision;
+
+#[cfg(test)]
+pub mod fixture;

@@ -332,45 +332,18 @@ fn status(table: &Table, runs: &Runs) -> Status {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn text(values: &[&str]) -> Vec<Value> {
-        let value = |text: &&str| match *text {
-            "" => Value::Null,
-            text => Value::Text(text.to_owned()),
-        };
-        values.iter().map(value).collect()
-    }
+    use crate::analysis::fixture;
 
     /// Strategy a with three seeds of which one failed, strategy b with two seeds that are one job.
     fn table() -> Table {
-        let numbers = |values: [f64; 5]| values.map(Value::Number).to_vec();
-        Table {
-            columns: vec![
-                Column::plain("job", CellType::Text, text(&["1", "2", "3", "4", "4"])),
-                Column::plain("strategy", CellType::Text, text(&["a", "a", "a", "b", "b"])),
-                Column::plain(
-                    "seed",
-                    CellType::Integer,
-                    [1, 2, 3, 1, 2].map(Value::Integer).to_vec(),
-                ),
-                Column::plain(
-                    "status",
-                    CellType::Text,
-                    text(&["done", "done", "unstable", "done", "done"]),
-                ),
-                Column::plain(
-                    "verdict",
-                    CellType::Text,
-                    text(&["deployed", "stalled", "", "deployed", "deployed"]),
-                ),
-                Column::plain("peak_vz", CellType::Number, numbers([10.0, 14.0, 99.0, 5.0, 5.0])),
-                Column::plain(
-                    "safe",
-                    CellType::Bool,
-                    [true, false, false, true, true].map(Value::Bool).to_vec(),
-                ),
-            ],
-        }
+        fixture::table(
+            "job strategy seed status   verdict  peak_vz safe
+             1   a        1    done     deployed 10.0    true
+             2   a        2    done     stalled  14.0    false
+             3   a        3    unstable -        99.0    false
+             4   b        1    done     deployed 5.0     true
+             4   b        2    done     deployed 5.0     true",
+        )
     }
 
     #[test]

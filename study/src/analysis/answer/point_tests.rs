@@ -1,30 +1,22 @@
 //! The answer of points with several runs.
 
 use super::*;
+use crate::analysis::fixture::{self, all, limits};
 use crate::job::proportion::Proportion;
-use crate::job::result_limit::{Condition, ResultLimit};
-use crate::job::row::CellType;
-use crate::store::table::Column;
 
 /// A run: strategy, mass, seed, `peak_vz`, `peak_kinetic_energy`, verdict.
 type Run = (&'static str, f64, i64, f64, f64, &'static str);
 
 fn table(runs: &[Run]) -> Table {
-    let column = |name: &str, cell_type, of: &dyn Fn(&Run) -> Value| {
-        Column::plain(name, cell_type, runs.iter().map(of).collect())
-    };
-    let text = |text: &str| Value::Text(text.to_owned());
-    let columns = vec![
-        column("job", CellType::Text, &|run| text(&format!("{run:?}"))),
-        column("strategy", CellType::Text, &|run| text(run.0)),
-        column("mass", CellType::Number, &|run| Value::Number(run.1)),
-        column("seed", CellType::Integer, &|run| Value::Integer(run.2)),
-        column("status", CellType::Text, &|_| text("done")),
-        column("verdict", CellType::Text, &|run| text(run.5)),
-        column("peak_vz", CellType::Number, &|run| Value::Number(run.3)),
-        column("peak_kinetic_energy", CellType::Number, &|run| Value::Number(run.4)),
-    ];
-    Table { columns }
+    let names =
+        "job strategy mass seed status verdict peak_vz peak_kinetic_energy numerically_damped\n";
+    let mut text = names.to_owned();
+    for (job, (strategy, mass, seed, speed, energy, verdict)) in runs.iter().enumerate() {
+        text += &format!(
+            "{job} {strategy} {mass:?} {seed} done {verdict} {speed:?} {energy:?} false\n"
+        );
+    }
+    fixture::table(&text)
 }
 
 /// Two strategies, two masses, two seeds. Rapid has half the loads; once a seed of it stalls.
@@ -42,17 +34,15 @@ fn runs() -> Vec<Run> {
 }
 
 fn points(table: &Table) -> Condensed {
-    let rows: Vec<usize> = (0..table.rows()).collect();
-    Condensed::of(table, &rows, &["seed".to_owned()])
+    Condensed::of(table, &all(table), &["seed".to_owned()])
 }
 
 #[test]
 fn seeds_do_not_multiply_pairs_and_a_value_is_the_best_where_all_its_runs_deploy() {
     let compared = |runs: &[Run]| {
         let table = table(runs);
-        let rows: Vec<usize> = (0..table.rows()).collect();
         let seed = ["seed".to_owned()];
-        comparison(&table, &rows, "strategy", (&[], &seed), &|_| Vec::new()).unwrap()
+        comparison(&table, &all(&table), "strategy", (&[], &seed), &|_| Vec::new()).unwrap()
     };
     let mut runs = runs();
     let ranking = compared(&runs);
@@ -78,12 +68,7 @@ fn seeds_do_not_multiply_pairs_and_a_value_is_the_best_where_all_its_runs_deploy
 
 #[test]
 fn a_point_counts_as_deployed_or_safe_if_all_its_runs_are() {
-    let bound = Condition::Bound { bound: 25.0, above: false, or_equal: false };
-    let word = Condition::Is(Value::Text("deployed".to_owned()));
-    let limit =
-        |measure, condition, text: &str| ResultLimit { measure, condition, text: text.to_owned() };
-    let limits =
-        [limit(ColumnId::PeakVz, bound, "< 25 m/s"), limit(ColumnId::Verdict, word, "deployed")];
+    let limits = limits(25.0);
     let table = table(&runs()).judged(&limits);
     let seed = ["seed".to_owned()];
     let counts = PointCounts::of(&points(&table), &seed);
@@ -92,8 +77,7 @@ fn a_point_counts_as_deployed_or_safe_if_all_its_runs_are() {
     assert_eq!((depends.points, depends.of), (1, 4));
     assert_eq!(depends.choices, [("seed".to_owned(), 1)]);
 
-    let rows: Vec<usize> = (0..table.rows()).collect();
-    let safety = Safety::of(&table, &limits, &rows, &seed).unwrap();
+    let safety = Safety::of(&table, &limits, &all(&table), &seed).unwrap();
     let expected = SafeCounts { points: 4, safe: 2, mixed: 1, not_judged: 0 };
     assert_eq!((safety.counts, safety.limits[0].as_str()), (expected, "peak_vz < 25 m/s"));
     assert_eq!(safety.missed, [("peak_vz".to_owned(), 1), ("verdict".to_owned(), 1)]);
@@ -106,10 +90,7 @@ fn a_point_counts_as_deployed_or_safe_if_all_its_runs_are() {
 #[test]
 fn a_run_that_cannot_be_trusted_leaves_the_median_to_the_others() {
     let mut table = table(&runs());
-    let damped = (0..table.rows()).map(|row| Value::Bool(row == 0)).collect();
-    let column = table.column("verdict").unwrap().clone();
-    let name = ColumnId::NumericallyDamped.name().to_owned();
-    table.columns.push(Column { name, cell_type: CellType::Bool, cells: damped, ..column });
+    table.columns[8].cells[0] = Value::Bool(true);
     let points = points(&table);
     assert_eq!(points.spread("peak_vz", 0), Some([9.99; 3]), "the seed that is trusted");
     assert_eq!(points.runs[0].deployed, Proportion { met: 2, of: 2 }, "its verdict counts");
@@ -124,8 +105,9 @@ fn overlapping_ranges_are_equal_in_pairs_and_in_the_best_values() {
             (1_i64..).zip(speeds).map(move |(seed, v)| (strategy, 1.0, seed, v, v, "deployed"))
         });
         let table = table(&runs.collect::<Vec<_>>());
-        let (rows, seed) = ((0..table.rows()).collect::<Vec<_>>(), ["seed".to_owned()]);
-        let ranking = comparison(&table, &rows, "strategy", (&[], &seed), &|_| Vec::new()).unwrap();
+        let seed = ["seed".to_owned()];
+        let ranking =
+            comparison(&table, &all(&table), "strategy", (&[], &seed), &|_| Vec::new()).unwrap();
         let tally = ranking.measures[0].against_best[1].clone().unwrap();
         (tally.count(compare::Better::Tie), ranking.measures[0].equal[1])
     };

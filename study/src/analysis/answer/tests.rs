@@ -1,70 +1,21 @@
 //! The answer of an invented table.
 
 use super::*;
-use crate::job::row::CellType;
-use crate::store::table::Column;
-
-fn column(name: &str, cell_type: CellType, cells: Vec<Value>) -> Column {
-    Column {
-        name: name.to_owned(),
-        cell_type,
-        unit: String::new(),
-        shown: crate::input::units::DisplayUnit::si(""),
-        meaning: String::new(),
-        cells,
-    }
-}
+use crate::analysis::fixture;
 
 /// Two flows, two residual masses, one combination infeasible, one job failed.
 fn table() -> Table {
-    let text = |texts: &[&str]| texts.iter().map(|text| Value::Text((*text).to_owned())).collect();
-    let numbers = |numbers: &[f64]| numbers.iter().map(|x| Value::Number(*x)).collect();
-    let done = ["done", "done", "done", "done", "infeasible", "done", "unstable", "done"];
-    let verdict = ["deployed", "deployed", "stalled", "deployed"].map(str::to_owned);
-    let mut verdict: Vec<Value> = verdict.into_iter().map(Value::Text).collect();
-    verdict.extend([Value::Null, Value::Text("partial".to_owned()), Value::Null]);
-    verdict.push(Value::Text("deployed".to_owned()));
-    Table {
-        columns: vec![
-            column("job", CellType::Text, text(&["a", "b", "c", "d", "e", "f", "g", "h"])),
-            column("flow", CellType::Number, numbers(&[1., 2., 1., 2., 1., 2., 1., 2.])),
-            column("mass", CellType::Number, numbers(&[0., 0., 1., 1., 2., 2., 3., 3.])),
-            column("status", CellType::Text, text(&done)),
-            column("verdict", CellType::Text, verdict),
-            column(
-                "near_threshold",
-                CellType::Bool,
-                (0..8)
-                    .map(
-                        |row| {
-                            if row == 4 || row == 6 { Value::Null } else { Value::Bool(row == 2) }
-                        },
-                    )
-                    .collect(),
-            ),
-            column(
-                "t_90_z_rim_since_release",
-                CellType::Number,
-                numbers(&[4., 2., 6., 3., 0., 9., 0.1, 9.]),
-            ),
-            column(
-                "peak_kinetic_energy",
-                CellType::Number,
-                numbers(&[10., 20., 30., 40., 0., 5., 99., 5.]),
-            ),
-            column(
-                "ledger_residual",
-                CellType::Number,
-                numbers(&[1e-9, 3e-9, 2e-9, 0., 0., 0., 0.5, 0.]),
-            ),
-            column("passages", CellType::Integer, vec![Value::Null; 8]),
-            column(
-                "numerically_damped",
-                CellType::Bool,
-                (0..8).map(|row| Value::Bool(row == 1 || row == 6)).collect(),
-            ),
-        ],
-    }
+    fixture::table(
+        "job flow mass status     verdict  near_threshold t_90_z_rim_since_release peak_kinetic_energy ledger_residual passages numerically_damped
+         a   1.0  0.0  done       deployed false          4.0                      10.0                1e-9            -        false
+         b   2.0  0.0  done       deployed false          2.0                      20.0                3e-9            -        true
+         c   1.0  1.0  done       stalled  true           6.0                      30.0                2e-9            -        false
+         d   2.0  1.0  done       deployed false          3.0                      40.0                0               -        false
+         e   1.0  2.0  infeasible -        -              0                        0                   0               -        false
+         f   2.0  2.0  done       partial  false          9.0                      5.0                 0               -        false
+         g   1.0  3.0  unstable   -        -              0.1                      99.0                0.5             -        true
+         h   2.0  3.0  done       deployed false          9.0                      5.0                 0               -        false",
+    )
 }
 
 #[test]
@@ -104,28 +55,17 @@ fn the_hardest_job_can_be_trusted_where_any_can() {
 
 /// Jobs `a`, `b`, … of parameters `strategy`, `mass`: done, deployed, with these measures.
 fn study(rows: &[(&str, f64, f64, f64)]) -> Table {
-    let text =
-        |of: &dyn Fn(usize) -> String| (0..rows.len()).map(|row| Value::Text(of(row))).collect();
-    let numbers =
-        |of: &dyn Fn(usize) -> f64| (0..rows.len()).map(|row| Value::Number(of(row))).collect();
-    Table {
-        columns: vec![
-            column("job", CellType::Text, text(&|row| format!("job {row}"))),
-            column("strategy", CellType::Text, text(&|row| rows[row].0.to_owned())),
-            column("mass", CellType::Number, numbers(&|row| rows[row].1)),
-            column("status", CellType::Text, text(&|_| "done".to_owned())),
-            column("verdict", CellType::Text, text(&|_| "deployed".to_owned())),
-            column(HEADLINE[0].name(), CellType::Number, numbers(&|row| rows[row].2)),
-            column(HEADLINE[1].name(), CellType::Number, numbers(&|row| rows[row].3)),
-            column("passages", CellType::Integer, vec![Value::Integer(0); rows.len()]),
-        ],
+    let [time, energy] = HEADLINE.map(ColumnId::name);
+    let mut text = format!("job strategy mass status verdict {time} {energy} passages\n");
+    for (row, (strategy, mass, time, energy)) in rows.iter().enumerate() {
+        text += &format!("{row} {strategy} {mass:?} done deployed {time:?} {energy:?} 0\n");
     }
+    fixture::table(&text)
 }
 
 /// The values of a parameter, ranked as the answer does.
 fn compared(table: &Table, by: &str) -> Result<Ranking, String> {
-    let rows: Vec<usize> = (0..table.rows()).collect();
-    comparison(table, &rows, by, (&[], &[]), &|_| Vec::new())
+    comparison(table, &fixture::all(table), by, (&[], &[]), &|_| Vec::new())
 }
 
 /// Median of each value that is compared, and the best value, of a headline measure.
@@ -239,24 +179,15 @@ fn a_set_of_jobs_counts_once_and_a_set_of_one_job_not_at_all() {
 /// Points within the mesh error of the best one count once, whatever the number of their runs, and it does not count.
 #[test]
 fn points_within_the_mesh_error_of_the_best_one_are_counted_without_replicates() {
-    let numbers = |values: &[f64]| values.iter().copied().map(Value::Number).collect();
-    let text = |texts: [&str; 6]| texts.map(|text| Value::Text(text.to_owned())).to_vec();
-    let integers = |values: [i64; 6]| values.map(Value::Integer).to_vec();
-    let table = Table {
-        columns: vec![
-            column("job", CellType::Text, text(["a", "b", "c", "d", "e", "f"])),
-            column("N", CellType::Integer, integers([5, 5, 6, 6, 8, 8])),
-            column("seed", CellType::Integer, integers([1, 2, 1, 2, 1, 2])),
-            column("status", CellType::Text, text(["done"; 6])),
-            column("verdict", CellType::Text, text(["deployed"; 6])),
-            column(
-                "peak_kinetic_energy",
-                CellType::Number,
-                numbers(&[9.0, 8.9, 8.8, 8.5, 8.0, 8.2]),
-            ),
-            column("peak_kinetic_energy_error", CellType::Number, numbers(&[0.5; 6])),
-        ],
-    };
+    let table = fixture::table(
+        "job N seed status verdict  peak_kinetic_energy peak_kinetic_energy_error
+         a   5 1    done   deployed 9.0                 0.5
+         b   5 2    done   deployed 8.9                 0.5
+         c   6 1    done   deployed 8.8                 0.5
+         d   6 2    done   deployed 8.5                 0.5
+         e   8 1    done   deployed 8.0                 0.5
+         f   8 2    done   deployed 8.2                 0.5",
+    );
     let most = |replicates: &[String]| Answer::of_jobs(&table, replicates).most_energy.unwrap();
     let energy = most(&["seed".to_owned()]);
     assert_eq!((energy.job.as_str(), energy.others, energy.within_mesh_error), ("a", 0, 1));

@@ -3,42 +3,19 @@
 use proptest::prelude::*;
 
 use super::*;
-
-pub(super) fn column(name: &str, cell_type: CellType, cells: Vec<Value>) -> Column {
-    Column {
-        name: name.to_owned(),
-        cell_type,
-        unit: String::new(),
-        shown: crate::input::units::DisplayUnit::si(""),
-        meaning: String::new(),
-        cells,
-    }
-}
+use crate::analysis::fixture::{self, all};
 
 /// A table of parameters `a`, `b` and a measure.
 pub(super) fn table(rows: &[(i64, f64, &str, Option<f64>)]) -> Table {
-    let text = |text: &str| Value::Text(text.to_owned());
-    Table {
-        columns: vec![
-            column(
-                "job",
-                CellType::Text,
-                (0..rows.len()).map(|row| text(&row.to_string())).collect(),
-            ),
-            column("a", CellType::Integer, rows.iter().map(|row| Value::Integer(row.0)).collect()),
-            column("b", CellType::Number, rows.iter().map(|row| Value::Number(row.1)).collect()),
-            column("status", CellType::Text, rows.iter().map(|row| text(row.2)).collect()),
-            column(
-                "peak_vz",
-                CellType::Number,
-                rows.iter().map(|row| row.3.map_or(Value::Null, Value::Number)).collect(),
-            ),
-        ],
+    let mut text = "job a b status peak_vz\n".to_owned();
+    for (job, (a, b, status, value)) in rows.iter().enumerate() {
+        let value = value.map_or("-".to_owned(), |value| format!("{value:?}"));
+        text += &format!("{job} {a} {b:?} {status} {value}\n");
     }
-}
-
-pub(super) fn all(table: &Table) -> Vec<usize> {
-    (0..table.rows()).collect()
+    let mut table = fixture::table(&text);
+    // Also of rows without a value.
+    table.columns[4].cell_type = CellType::Number;
+    table
 }
 
 fn given(table: &Table, tie: f64) -> Measure<'_> {
@@ -93,7 +70,7 @@ fn every_outcome_is_given_and_none_is_ignored() {
 #[test]
 fn the_better_side_is_that_of_the_column() {
     let judged = |name: &str, tolerance: Tolerance, base: f64, other: f64| {
-        let column = column(name, CellType::Number, Vec::new());
+        let column = Column::plain(name, CellType::Number, Vec::new());
         judge(&Measure::of_runs(&column, tolerance), [base; 3], [other; 3])
     };
     let exact = Tolerance::given(ROUNDING);

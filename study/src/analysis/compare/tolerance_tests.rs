@@ -1,7 +1,8 @@
 //! Ties: the spread of the method, of seeds, of replicates, of margins.
 
-use super::tests::{all, column, table};
+use super::tests::table;
 use super::*;
+use crate::analysis::fixture::all;
 
 #[test]
 fn a_default_tie_is_the_larger_of_the_spreads_of_seed_and_method() {
@@ -58,7 +59,7 @@ fn replicates_give_a_tie_as_seeds_do() {
 fn a_larger_margin_is_better_beyond_the_spread_of_its_measure() {
     let mut table = table(&[(1, 1.0, "done", Some(-0.02)), (2, 1.0, "done", Some(0.2))]);
     let of = ["peak_vz", "verdict"].map(|name| Value::Text(name.to_owned())).to_vec();
-    table.columns.push(column("smallest_margin_of", CellType::Text, of));
+    table.columns.push(Column::plain("smallest_margin_of", CellType::Text, of));
     for (name, limit) in
         [("margin_peak_vz", 0.05), ("smallest_margin", 0.05), ("margin_verdict", ROUNDING)]
     {
@@ -109,7 +110,7 @@ fn a_difference_below_the_mesh_error_of_either_value_is_a_tie() {
         (4, 1.0, "done", Some(10.4)),
     ]);
     let errors = [0.1, 0.3, 0.5].map(Value::Number).into_iter().chain([Value::Null]).collect();
-    table.columns.push(column("peak_vz_change_to_n24", CellType::Number, errors));
+    table.columns.push(Column::plain("peak_vz_change_to_n24", CellType::Number, errors));
     let measure = table.column("peak_vz").unwrap();
     let tolerance = Tolerance::of(&table, &all(&table), measure, &[]);
     assert_eq!(tolerance.source, ToleranceSource::MeshError);

@@ -1,50 +1,31 @@
 //! Rankings of an invented table.
 
 use super::*;
-use crate::job::result_limit::Condition;
-use crate::job::row::CellType;
-use crate::store::table::Column;
+use crate::analysis::fixture::{self, all, limits};
 
 /// A run: strategy, mass, seed, `peak_vz`, verdict.
 type Run = (&'static str, f64, i64, f64, &'static str);
 
 const DEPLOYED: &str = "deployed";
 
-fn limits() -> Vec<ResultLimit> {
-    let bound = Condition::Bound { bound: 20.0, above: false, or_equal: false };
-    let word = Condition::Is(Value::Text(DEPLOYED.to_owned()));
-    let limit = |measure, condition| ResultLimit { measure, condition, text: String::new() };
-    vec![limit(ColumnId::PeakVz, bound), limit(ColumnId::Verdict, word)]
-}
-
 fn table(runs: &[Run]) -> Table {
-    let column = |name: &str, cell_type, of: &dyn Fn(&Run) -> Value| {
-        Column::plain(name, cell_type, runs.iter().map(of).collect())
-    };
-    let text = |text: &str| Value::Text(text.to_owned());
-    let columns = vec![
-        column("job", CellType::Text, &|run| text(&format!("{run:?}"))),
-        column("strategy", CellType::Text, &|run| text(run.0)),
-        column("mass", CellType::Number, &|run| Value::Number(run.1)),
-        column("seed", CellType::Integer, &|run| Value::Integer(run.2)),
-        column("status", CellType::Text, &|run| {
-            text(if run.4 == "pending" { "pending" } else { "done" })
-        }),
-        column("verdict", CellType::Text, &|run| match run.4 {
-            "pending" | "" => Value::Null,
-            verdict => text(verdict),
-        }),
-        column("peak_vz", CellType::Number, &|run| Value::Number(run.3)),
-    ];
-    Table { columns }
+    let mut text = "job strategy mass seed status verdict peak_vz\n".to_owned();
+    for (job, (strategy, mass, seed, speed, end)) in runs.iter().enumerate() {
+        let (status, verdict) = match *end {
+            "pending" => ("pending", "-"),
+            "" => ("done", "-"),
+            verdict => ("done", verdict),
+        };
+        text += &format!("{job} {strategy} {mass:?} {seed} {status} {verdict} {speed:?}\n");
+    }
+    fixture::table(&text)
 }
 
 fn ranked(runs: &[Run], by: &[&str], limits: &[ResultLimit]) -> Ranking {
     let table = table(runs).judged(limits);
-    let rows: Vec<usize> = (0..table.rows()).collect();
     Ranking::of(&RankingInput {
         table: &table,
-        rows: &rows,
+        rows: &all(&table),
         by: &by.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>(),
         replicates: &["seed".to_owned()],
         limits,
@@ -79,7 +60,7 @@ const GRID: [Run; 12] = [
 
 #[test]
 fn limits_come_before_measures_and_every_run_of_a_point_must_be_safe() {
-    let ranking = ranked(&GRID, &["strategy"], &limits());
+    let ranking = ranked(&GRID, &["strategy"], &limits(20.0));
     assert_eq!(order(&ranking), ["c", "a", "b"]);
     assert_eq!((ranking.sets, ranking.basis), (2, Basis::Limits));
     let safe: Vec<_> = ranking.candidates.iter().map(|c| (c.safe, c.points, c.safe_runs)).collect();
@@ -107,7 +88,7 @@ fn limits_come_before_measures_and_every_run_of_a_point_must_be_safe() {
 
 #[test]
 fn points_that_not_every_candidate_has_change_nothing() {
-    let without = ranked(&GRID, &["strategy"], &limits());
+    let without = ranked(&GRID, &["strategy"], &limits(20.0));
     // As a search adds them: at masses of which the others have no point.
     let searched = [
         ("a", 1.5, 1, 99.0, "stalled"),
@@ -116,12 +97,12 @@ fn points_that_not_every_candidate_has_change_nothing() {
         ("c", 1.75, 2, 99.0, "stalled"),
         ("b", 3.0, 1, 1.0, "pending"),
     ];
-    let with = ranked(&[&GRID[..], &searched[..]].concat(), &["strategy"], &limits());
+    let with = ranked(&[&GRID[..], &searched[..]].concat(), &["strategy"], &limits(20.0));
     assert_eq!(with.candidates, without.candidates);
     assert_eq!((with.sets, with.outside, with.not_ended), (2, 2, 1));
     // A strategy with no partner is left out, with the reason.
     let alone = [("d", 9.0, 1, 1.0, DEPLOYED), ("d", 9.0, 2, 1.0, DEPLOYED)];
-    let with = ranked(&[&GRID[..], &alone[..]].concat(), &["strategy"], &limits());
+    let with = ranked(&[&GRID[..], &alone[..]].concat(), &["strategy"], &limits(20.0));
     assert_eq!(with.candidates, without.candidates);
     let (values, reason) = &with.left_out[0];
     assert_eq!(values, &[Value::Text("d".to_owned())]);
@@ -130,7 +111,7 @@ fn points_that_not_every_candidate_has_change_nothing() {
 
 #[test]
 fn all_parameters_rank_every_point() {
-    let ranking = ranked(&GRID, &["strategy", "mass"], &limits());
+    let ranking = ranked(&GRID, &["strategy", "mass"], &limits(20.0));
     assert_eq!(order(&ranking), ["a 1", "c 1", "c 2", "a 2", "b 1", "b 2"]);
     assert_eq!((ranking.sets, ranking.matched.len()), (1, 0));
 }
@@ -142,7 +123,7 @@ fn rounding_errors_decide_no_order() {
     assert_ne!(speed.to_bits(), 0.3_f64.to_bits());
     for speeds in [[speed, 0.3], [0.3, speed]] {
         let runs = [("b", 1.0, 1, speeds[0], DEPLOYED), ("a", 1.0, 1, speeds[1], DEPLOYED)];
-        let ranking = ranked(&runs, &["strategy"], &limits());
+        let ranking = ranked(&runs, &["strategy"], &limits(20.0));
         assert_eq!(order(&ranking), ["b", "a"]);
     }
 }
@@ -156,7 +137,7 @@ fn of_two_points_that_are_not_safe_the_one_with_fewer_runs_missed_is_better() {
         runs.push(("a", 1.0, seed, 8.0, word(false)));
         runs.push(("b", 1.0, seed, 10.0, word(seed > 1)));
     }
-    for limits in [limits(), Vec::new()] {
+    for limits in [limits(20.0), Vec::new()] {
         let ranking = ranked(&runs, &["strategy"], &limits);
         assert_eq!(order(&ranking), ["b", "a"]);
         let missed: Vec<_> = ranking.candidates.iter().map(|c| c.missed).collect();

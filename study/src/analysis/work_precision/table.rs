@@ -276,45 +276,19 @@ fn texts(study: &str, physical: &[&Column], naming: Option<usize>, row: usize) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::units::DisplayUnit;
-    use crate::job::row::CellType;
-
-    fn column(name: &str, cells: Vec<Value>) -> Column {
-        Column {
-            name: name.to_owned(),
-            cell_type: CellType::Text,
-            unit: String::new(),
-            shown: DisplayUnit::si(""),
-            meaning: String::new(),
-            cells,
-        }
-    }
-
-    fn texts(values: &[&str]) -> Vec<Value> {
-        values.iter().map(|text| Value::Text((*text).to_owned())).collect()
-    }
-
-    fn numbers(values: &[i64]) -> Vec<Value> {
-        values.iter().map(|number| Value::Integer(*number)).collect()
-    }
+    use crate::analysis::fixture;
 
     #[test]
     fn every_numerical_parameter_of_a_table_gives_configurations() {
-        let table = Table {
-            columns: vec![
-                column("job", texts(&["1", "2", "3", "4", "5", "6"])),
-                column("strategy", texts(&["a", "a", "a", "a", "b", "b"])),
-                column("model", texts(&["film", "film", "piston", "piston", "film", "film"])),
-                column("subdivisions", numbers(&[4, 4, 4, 8, 4, 4])),
-                column("contact.distance", numbers(&[1, 1, 1, 2, 1, 2])),
-                column("seed", numbers(&[1, 2, 1, 2, 1, 1])),
-                column("status", texts(&["done", "done", "done", "done", "done", "unstable"])),
-                column("peak_vz", [20.0, 21.0, 30.0, 30.0, 18.0, 0.0].map(Value::Number).to_vec()),
-                column("elements", numbers(&[768, 768, 0, 0, 768, 768])),
-                column("steps", numbers(&[1000; 6])),
-                column("wall_seconds", [1.0; 6].map(Value::Number).to_vec()),
-            ],
-        };
+        let table = fixture::table(
+            "job strategy model  subdivisions contact.distance seed status   peak_vz elements steps wall_seconds
+             1   a        film   4            1                1    done     20.0    768      1000  1.0
+             2   a        film   4            1                2    done     21.0    768      1000  1.0
+             3   a        piston 4            1                1    done     30.0    0        1000  1.0
+             4   a        piston 8            2                2    done     30.0    0        1000  1.0
+             5   b        film   4            1                1    done     18.0    768      1000  1.0
+             6   b        film   4            2                1    unstable 0.0     768      1000  1.0",
+        );
         let history =
             |_: &str| Some(Histories { courses: [None, None], simulated: 0.5, implicit: false });
         let scenes = scenes("study", &table, &["seed".to_owned()], &history);
@@ -338,19 +312,13 @@ mod tests {
 
     #[test]
     fn a_numerical_parameter_that_differs_only_between_scenes_is_part_of_them() {
-        let table = Table {
-            columns: vec![
-                column("job", texts(&["1", "2", "3", "4"])),
-                column("strategy", texts(&["a", "a", "b", "b"])),
-                column("model", texts(&["film"; 4])),
-                column("outputs.sample_interval", numbers(&[1, 1, 5, 5])),
-                column("film.numerical_damping", numbers(&[0, 1, 0, 1])),
-                column("integrator", texts(&["explicit", "hybrid", "implicit", "implicit"])),
-                column("status", texts(&["done"; 4])),
-                column("elements", numbers(&[768; 4])),
-                column("steps", numbers(&[1000; 4])),
-            ],
-        };
+        let table = fixture::table(
+            "job strategy model outputs.sample_interval film.numerical_damping integrator status elements steps
+             1   a        film  1                       0                      explicit   done   768      1000
+             2   a        film  1                       1                      hybrid     done   768      1000
+             3   b        film  5                       0                      implicit   done   768      1000
+             4   b        film  5                       1                      implicit   done   768      1000",
+        );
         let scenes = scenes("study", &table, &[], &|_: &str| None);
         assert_eq!(scenes[1].meaning, "outputs.sample_interval 5");
         let names = |run: &Run| -> Vec<String> {

@@ -1,17 +1,14 @@
 //! Charts of studies with replicates, limits or a search.
 
 use super::*;
+use crate::analysis::fixture;
 use crate::analysis::replicates::Condensed;
 use crate::chart::kinds::ChartKind;
 use crate::chart::runs::Replicated;
 use crate::job::result_limit::{Condition, ResultLimit};
 
 fn limits() -> Vec<ResultLimit> {
-    let speed = Condition::Bound { bound: 25.0, above: false, or_equal: false };
-    let word = Condition::Is(Value::Text("deployed".to_owned()));
-    let limit =
-        |measure, condition, text: &str| ResultLimit { measure, condition, text: text.to_owned() };
-    vec![limit(ColumnId::PeakVz, speed, "< 25 m/s"), limit(ColumnId::Verdict, word, "deployed")]
+    fixture::limits(25.0)
 }
 
 /// Strategy × mass flow × four seeds. The speed grows with the flow and the seed; one run of the last direct

@@ -1,25 +1,17 @@
 //! The rows that a ranking reads.
 
 use super::*;
-use crate::input::value::Value;
-use crate::job::row::CellType;
+use crate::analysis::fixture;
 
 /// Strategies a and b with two seeds each. One run of a is not safe.
 fn table() -> Table {
-    let text = |words: [&str; 4]| words.map(|word| Value::Text(word.to_owned())).to_vec();
-    Table {
-        columns: vec![
-            Column::plain("job", CellType::Text, text(["1", "2", "3", "4"])),
-            Column::plain("strategy", CellType::Text, text(["a", "a", "b", "b"])),
-            Column::plain("seed", CellType::Integer, [1, 2, 1, 2].map(Value::Integer).to_vec()),
-            Column::plain("status", CellType::Text, text(["done"; 4])),
-            Column::plain(
-                "safe",
-                CellType::Bool,
-                [true, false, true, true].map(Value::Bool).to_vec(),
-            ),
-        ],
-    }
+    fixture::table(
+        "job strategy seed status safe
+         1   a        1    done   true
+         2   a        2    done   false
+         3   b        1    done   true
+         4   b        2    done   true",
+    )
 }
 
 #[test]

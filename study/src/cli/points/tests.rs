@@ -1,44 +1,21 @@
 //! The points of a small table: columns, cells, conditions.
 
 use super::*;
-use crate::job::row::SAME_JOB_AS;
-
-fn texts(values: [&str; 6]) -> Vec<Value> {
-    let value = |text: &str| match text {
-        "" => Value::Null,
-        text => Value::Text(text.to_owned()),
-    };
-    values.map(value).to_vec()
-}
+use crate::analysis::fixture;
 
 /// Strategy a: three seeds, one failed. Strategy b: three seeds, all safe.
 fn table() -> Table {
-    let numbers = |name: &str, values: [f64; 6]| {
-        Column::plain(name, CellType::Number, values.map(Value::Number).to_vec())
-    };
-    let text = |name: &str, values: [&str; 6]| Column::plain(name, CellType::Text, texts(values));
-    let mut safe = [true, false, false, true, true, true].map(Value::Bool);
-    safe[2] = Value::Null;
-    Table {
-        columns: vec![
-            text("job", ["1", "2", "3", "4", "5", "6"]),
-            text("strategy", ["a", "a", "a", "b", "b", "b"]),
-            Column::plain(
-                "seed",
-                CellType::Integer,
-                [1, 2, 3, 1, 2, 3].map(Value::Integer).to_vec(),
-            ),
-            text("status", ["done", "done", "unstable", "done", "done", "done"]),
-            text("verdict", ["deployed", "stalled", "", "deployed", "deployed", "deployed"]),
-            numbers("peak_vz", [20.0, 30.0, 99.0, 10.0, 11.0, 15.0]),
-            Column::plain("safe", CellType::Bool, safe.to_vec()),
-            numbers("smallest_margin", [0.2, -0.2, 9.0, 0.6, 0.5612, 0.4]),
-            text("smallest_margin_of", ["peak_vz", "verdict", "", "peak_vz", "peak_vz", "peak_vz"]),
-            text("verdict_depends_on", ["seed", "seed", "", "", "", ""]),
-            text(SAME_JOB_AS, [""; 6]),
-            numbers("film.thickness", [2e-5; 6]),
-        ],
-    }
+    let mut table = fixture::table(
+        "job strategy seed status   verdict  peak_vz safe  smallest_margin smallest_margin_of verdict_depends_on same_job_as film.thickness
+         1   a        1    done     deployed 20.0    true  0.2             peak_vz            seed               -           2e-5
+         2   a        2    done     stalled  30.0    false -0.2            verdict            seed               -           2e-5
+         3   a        3    unstable -        99.0    -     9.0             -                  -                  -           2e-5
+         4   b        1    done     deployed 10.0    true  0.6             peak_vz            -                  -           2e-5
+         5   b        2    done     deployed 11.0    true  0.5612          peak_vz            -                  -           2e-5
+         6   b        3    done     deployed 15.0    true  0.4             peak_vz            -                  -           2e-5",
+    );
+    table.columns[10].cell_type = CellType::Text;
+    table
 }
 
 fn seeds() -> Vec<String> {
