@@ -126,7 +126,7 @@ pub fn choices(table: &MeshErrors, scenes: &[(&Scene, Features)]) -> Result<Vec<
     let refusals = [ModelKind::Piston, ModelKind::Storeys, ModelKind::Film]
         .map(|model| (model, scenes.iter().find_map(|(scene, _)| refusal(model, scene))));
     let of_measure = |entry: &&Entry| entry.measure == PROMISED[0].measure.name();
-    let methods = table.errors.all().iter().filter(of_measure);
+    let methods = table.errors.iter().filter(of_measure);
     let methods = methods.map(|entry| Method { model: entry.model, meshes: entry.meshes.clone() });
     let mut choices: Vec<Choice> = methods
         .map(|method| {

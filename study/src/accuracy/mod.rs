@@ -6,7 +6,6 @@
 
 pub mod choice;
 pub mod coordinates;
-pub mod entries;
 pub mod entry;
 pub mod features;
 pub mod promised;
@@ -17,7 +16,6 @@ mod tests;
 
 pub use choice::{Choice, choice, choices};
 pub use coordinates::Coordinates;
-pub use entries::Entries;
 pub use entry::{Entry, Limit, Method, RelativeError};
 pub use features::{Coverage, Features};
 pub use promised::{

@@ -14,7 +14,6 @@ use billow_solver::scene::Scene;
 use serde::{Deserialize, Serialize};
 
 use super::coordinates::Coordinates;
-use super::entries::Entries;
 use super::entry::{Entry, Limit, Method, RelativeError};
 use super::features::{Coverage, Features};
 use super::promised::Promised;
@@ -45,7 +44,7 @@ pub struct MeshErrors {
     /// The limit of each measure.
     pub limits: BTreeMap<String, Limit>,
     /// The errors.
-    pub errors: Entries,
+    pub errors: Vec<Entry>,
 }
 
 impl MeshErrors {
@@ -61,7 +60,7 @@ impl MeshErrors {
 
     /// The meshes of which it has errors, coarsest first.
     pub fn meshes(&self) -> Vec<u32> {
-        let single = self.errors.all().iter().filter_map(|entry| match entry.meshes[..] {
+        let single = self.errors.iter().filter_map(|entry| match entry.meshes[..] {
             [n] => Some(n),
             _ => None,
         });
@@ -96,8 +95,14 @@ impl MeshErrors {
         }
         let no_runs = || format!("{}: the table has no such runs of such scenes", method.name());
         let [n] = method.meshes[..] else { return Err(no_runs()) };
-        let known = self.errors.single_meshes(measure, method.model).filter(covers);
-        let known: Vec<(u32, &Entry)> = known.map(|entry| (entry.meshes[0], entry)).collect();
+        let of_model = |entry: &&Entry| entry.model == method.model && entry.measure == measure;
+        let known = self.errors.iter().filter(of_model).filter(covers);
+        let known = known.filter_map(|entry| match entry.meshes[..] {
+            [mesh] => Some((mesh, entry)),
+            _ => None,
+        });
+        let mut known: Vec<(u32, &Entry)> = known.collect();
+        known.sort_by_key(|(mesh, _)| *mesh);
         let below = known.iter().rfind(|(mesh, _)| *mesh < n);
         let above = known.iter().find(|(mesh, _)| *mesh >= n);
         if let (Some((coarse, coarse_entry)), Some((fine, fine_entry))) = (below, above) {
@@ -131,6 +136,9 @@ impl MeshErrors {
 
     /// The entry of a method, as it stands in the table.
     pub fn entry(&self, method: &Method, measure: &str) -> Option<&Entry> {
-        self.errors.find(measure, method)
+        let is = |entry: &&Entry| {
+            entry.model == method.model && entry.meshes == method.meshes && entry.measure == measure
+        };
+        self.errors.iter().find(is)
     }
 }

@@ -129,7 +129,7 @@ fn table(known: bool) -> MeshErrors {
         coverage: Coverage::of([(&base, features(&base))]).unwrap(),
         coordinates: Coordinates { base: features(&base).values, half: [0.0; FEATURES] },
         limits: [("t_90_z_rim".to_owned(), limit)].into(),
-        errors: vec![entry(16, 0.02), entry(4, 0.08)].into(),
+        errors: vec![entry(16, 0.02), entry(4, 0.08)],
     }
 }
 
@@ -167,7 +167,7 @@ fn a_feature_changes_the_bias_and_deviations_make_the_error_wider() {
     assert!((error.of_reference - 0.12).abs() < 1e-12, "{error:?}");
     // The value is 12 % too small: it lacks 12/88 of itself.
     assert!((error.of_itself - 0.12 / 0.88).abs() < 1e-12, "{error:?}");
-    let mut entries: Vec<Entry> = table.errors.into();
+    let mut entries = table.errors;
     for entry in &mut entries {
         (entry.scatter, entry.deviation, entry.scenes) = (0.03, 0.04, 20);
     }
@@ -222,34 +222,6 @@ fn the_shipped_table_is_that_of_this_physics_and_agrees_with_the_names_of_the_co
     }
 }
 
-#[test]
-fn every_entry_of_the_shipped_table_is_found_and_single_meshes_are_in_order() {
-    let table = MeshErrors::shipped();
-    for entry in table.errors.all() {
-        let method = Method { model: entry.model, meshes: entry.meshes.clone() };
-        assert_eq!(table.entry(&method, &entry.measure), Some(entry));
-    }
-    let none = Method { model: ModelKind::Film, meshes: vec![4, 7] };
-    assert_eq!(table.entry(&none, "t_90_z_rim"), None);
-    assert_eq!(
-        table.entry(&Method { model: ModelKind::Film, meshes: vec![4] }, "t_91_z_rim"),
-        None
-    );
-    for promised in &PROMISED {
-        let measure = promised.measure.name();
-        let single = |entry: &&Entry| entry.measure == measure && entry.meshes.len() == 1;
-        let mut expected: Vec<u32> =
-            table.errors.all().iter().filter(single).map(|entry| entry.meshes[0]).collect();
-        expected.sort_unstable();
-        let found = table.errors.single_meshes(measure, ModelKind::Film);
-        assert_eq!(found.map(|entry| entry.meshes[0]).collect::<Vec<_>>(), expected);
-        assert_eq!(table.errors.single_meshes(measure, ModelKind::Piston).count(), 0);
-    }
-    // The file has the entries alone.
-    let text = serde_json::to_string(table).unwrap();
-    assert_eq!(serde_json::from_str::<MeshErrors>(&text).unwrap(), *table);
-}
-
 /// The shipped table has all three models for each measure, and the piston is the least exact in how soon.
 #[test]
 fn the_models_without_mesh_stand_beside_the_meshes_the_cheapest_first() {
@@ -278,14 +250,14 @@ fn a_model_that_cannot_compute_a_scene_keeps_nothing() {
     held.supports[1].on = billow_solver::scene::SupportLocation::TopRing;
     let mut table = table(true);
     table.coverage = Coverage::of([(&held, features(&held))]).unwrap();
-    let mut entries: Vec<Entry> = table.errors.into();
+    let mut entries = table.errors;
     let meshless = |model| Entry { model, meshes: Vec::new(), ..entries[0].clone() };
     let more = [ModelKind::Piston, ModelKind::Storeys].map(meshless);
     entries.extend(more);
     let of_all = entries.iter().flat_map(|entry| {
         PROMISED.map(|of| Entry { measure: of.measure.name().to_owned(), ..entry.clone() })
     });
-    table.errors = of_all.collect::<Vec<Entry>>().into();
+    table.errors = of_all.collect();
     let choices = choices(&table, &[(&held, features(&held))]).unwrap();
     let keeps = |model: ModelKind| {
         let choice = choices.iter().find(|choice| choice.method.model == model).unwrap();

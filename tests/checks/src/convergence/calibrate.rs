@@ -68,7 +68,7 @@ pub(super) fn calibrate(
         coverage,
         coordinates,
         limits,
-        errors: errors.into(),
+        errors,
     })
 }
 
