@@ -95,7 +95,6 @@ pub fn svg(
     }
     let plain: Vec<&str> = quantities.iter().map(|quantity| quantity.name.plain.as_str()).collect();
     notes.extend(time.note.clone());
-    notes.extend(source.shared_job_note());
     notes.extend(not_drawn(source));
     notes.extend(source.runs_notes(None));
     let mut legends = encoding.legends(false);

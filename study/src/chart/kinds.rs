@@ -1,7 +1,7 @@
 //! The kinds of charts, and those that `billow chart` draws without options: they answer the first questions of most
 //! studies. A study with limits, replicates or a search has its answer first.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use super::history::{MAX_JOBS, has_history};
 use super::map::{Judged, MAX_VALUES};
@@ -36,7 +36,7 @@ pub enum ChartKind {
 }
 
 impl ChartKind {
-    /// The map of a measure over two parameters; a proportion of runs without them over those that change it the most.
+    /// The map of a measure over two parameters; a proportion of runs without them over the first two.
     ///
     /// # Errors
     /// A measure that needs axes, a study with fewer than two parameters that vary.
@@ -44,12 +44,12 @@ impl ChartKind {
         if let Some(axes) = axes {
             return Ok(Self::Map(measure, axes));
         }
-        let Some(judged) = Judged::of_name(&measure) else {
+        if Judged::of_name(&measure).is_none() {
             let problem = "needs a parameter to be drawn over";
             let allowed = "--over PARAMETER, or --map X,Y";
             return Err(invalid_option("--measure", &measure, problem, allowed, ""));
-        };
-        let axes = outcome_axes(source, judged).ok_or_else(|| {
+        }
+        let axes = outcome_axes(source).ok_or_else(|| {
             let problem = "a map needs two parameters that vary";
             let allowed = "a study that varies two, without its replicates";
             invalid_option("--measure", &measure, problem, allowed, "")
@@ -122,7 +122,7 @@ pub fn standard<'a>(source: &Source<'a>) -> (Vec<(ChartKind, Source<'a>)>, Vec<S
     if source.search.is_some() {
         kinds.push(ChartKind::Borders(None, Vec::new()));
     } else if asks {
-        match outcome_axes(source, judged) {
+        match outcome_axes(source) {
             None => notes.push("no map of outcomes: it needs two parameters that vary".to_owned()),
             Some(axes) if source.rows.iter().any(|row| judged.proportion(source, *row).of > 0) => {
                 kinds.push(ChartKind::Map(judged.name().to_owned(), axes));
@@ -225,10 +225,10 @@ fn measured(source: &Source<'_>, measures: &[&str]) -> Vec<String> {
     measures.iter().filter(has_value).map(|name| (*name).to_owned()).collect()
 }
 
-/// The axes of a map of outcomes: of the parameters but the strategy the two that change the proportion the
-/// most; with one such parameter, that and the strategy. Parameters with more values than fit are no axes,
-/// while there are others. `None` without two parameters that vary.
-pub(super) fn outcome_axes(source: &Source<'_>, judged: Judged) -> Option<[String; 2]> {
+/// The axes of a map of outcomes: the first two parameters but the strategy; with one such parameter, that and the
+/// strategy. Parameters with more values than fit are no axes, while there are others. `None` without two parameters
+/// that vary.
+pub(super) fn outcome_axes(source: &Source<'_>) -> Option<[String; 2]> {
     let mut all = axes(source);
     let legible: Vec<String> =
         all.iter().filter(|name| is_legible(source, name)).cloned().collect();
@@ -237,11 +237,6 @@ pub(super) fn outcome_axes(source: &Source<'_>, judged: Judged) -> Option<[Strin
     }
     let (strategy, mut others): (Vec<String>, Vec<String>) =
         all.into_iter().partition(|name| name == STRATEGY);
-    if others.len() > 2 {
-        let mut ordered = others.clone();
-        ordered.sort_by(|a, b| effect(source, judged, b).total_cmp(&effect(source, judged, a)));
-        others.retain(|name| ordered[..2].contains(name));
-    }
     others.extend(strategy);
     others.truncate(2);
     others.try_into().ok()
@@ -253,22 +248,6 @@ fn is_legible(source: &Source<'_>, name: &str) -> bool {
     let rows = &common.as_ref().unwrap_or(source).rows;
     let column = source.table.parameters().find(|column| column.name == name);
     column.is_some_and(|column| values(column, rows).len() <= MAX_VALUES)
-}
-
-/// Largest difference of the mean proportion between two values of a parameter.
-fn effect(source: &Source<'_>, judged: Judged, name: &str) -> f64 {
-    let Some(column) = source.table.column(name) else { return 0.0 };
-    let mut values: BTreeMap<String, (f64, f64)> = BTreeMap::new();
-    for row in &source.rows {
-        let proportion = judged.proportion(source, *row);
-        if proportion.of > 0 {
-            let known = values.entry(canonical(&column.cells[*row])).or_default();
-            known.0 += proportion.met as f64 / proportion.of as f64;
-            known.1 += 1.0;
-        }
-    }
-    let means = || values.values().map(|(sum, count)| sum / count);
-    (means().fold(f64::NEG_INFINITY, f64::max) - means().fold(f64::INFINITY, f64::min)).max(0.0)
 }
 
 /// The source at the middle values of each parameter but these and the strategy; `None` where no other varies.

@@ -23,8 +23,6 @@ use crate::store::table::Column;
 const MAX_PANELS: usize = 18;
 /// Most values along an axis. Chosen: the numbers in narrower cells are not legible.
 pub const MAX_VALUES: usize = 16;
-/// Sign before the text of a cell whose job another cell shows too.
-const SAME_JOB: &str = "=";
 /// Sign after a proportion that does not count every run.
 const NOT_ALL: &str = "*";
 
@@ -145,7 +143,6 @@ pub fn svg(source: &Source<'_>, measure: &str, axes: [&str; 2]) -> Result<String
     }
     let legend = cells.legend(&panels);
     notes.splice(0..0, cells.notes());
-    notes.extend(source.shared_job_note());
     let (plain, scale) = quantity.scale(source);
     let title = format!("{plain} over {} and {}", x.plain().plain, y.plain().plain);
     let maps = Maps {
@@ -204,8 +201,6 @@ struct Cells<'s, 'a> {
     source: &'s Source<'a>,
     quantity: &'s Quantity<'a>,
     outcomes: Outcomes<'s>,
-    /// Rows whose job has other rows.
-    shared: Vec<usize>,
     /// Number of points that miss each limit, where several limits have a letter each.
     missed: Vec<usize>,
     /// Whether a point has several runs, and whether one of them is not counted.
@@ -221,7 +216,6 @@ impl<'s, 'a> Cells<'s, 'a> {
             source,
             quantity,
             outcomes: Outcomes::new(source),
-            shared: source.shared_jobs().into_iter().flatten().collect(),
             missed: vec![0; missed],
             several: false,
             not_all: false,
@@ -230,7 +224,7 @@ impl<'s, 'a> Cells<'s, 'a> {
 
     fn cell(&mut self, row: usize) -> Cell {
         let source = self.source;
-        let mut cell = match self.quantity {
+        match self.quantity {
             Quantity::Measure(column, unit, bound) => {
                 let Some(value) = outcome::value(source, column, row) else {
                     return Cell::letter(self.outcomes.letter(row));
@@ -254,11 +248,7 @@ impl<'s, 'a> Cells<'s, 'a> {
                     ..Cell::default()
                 }
             }
-        };
-        if self.shared.contains(&row) {
-            cell.text = format!("{SAME_JOB} {}", cell.text);
         }
-        cell
     }
 
     /// The text of a proportion: k/n of several runs; of one run what it is.
@@ -307,10 +297,6 @@ impl<'s, 'a> Cells<'s, 'a> {
         if cells().any(|cell| cell.ground == Ground::Absent) {
             let text = "no such point in the study".to_owned();
             legend.entries.push((Sample::Cell(Cell::default()), text));
-        }
-        if cells().any(|cell| cell.text.starts_with(SAME_JOB)) {
-            let sample = Sample::Letter(SAME_JOB.to_owned());
-            legend.entries.push((sample, "same job as another cell".to_owned()));
         }
         legend
     }

@@ -89,30 +89,6 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Rows of the same job, in the order of their first row; only jobs with several rows.
-    fn shared_jobs(&self) -> Vec<Vec<usize>> {
-        let mut jobs: Vec<(&str, Vec<usize>)> = Vec::new();
-        let mut index = std::collections::BTreeMap::new();
-        for row in &self.rows {
-            let id = self.job(*row);
-            let at = *index.entry(id).or_insert(jobs.len());
-            if at == jobs.len() {
-                jobs.push((id, Vec::new()));
-            }
-            jobs[at].1.push(*row);
-        }
-        jobs.into_iter().map(|(_, rows)| rows).filter(|rows| rows.len() > 1).collect()
-    }
-
-    /// A note on the points that are one job.
-    fn shared_job_note(&self) -> Option<String> {
-        let shared = self.shared_jobs();
-        let points: usize = shared.iter().map(Vec::len).sum();
-        let jobs =
-            if shared.len() == 1 { "1 job".to_owned() } else { format!("{} jobs", shared.len()) };
-        (points > 0).then(|| format!("{points} points are {jobs}: they have the same result."))
-    }
-
     /// The column of numbers with this name, which `option` asks for.
     fn measure(&self, option: &str, name: &str) -> Result<&'a Column> {
         let numbers = || {

@@ -50,7 +50,6 @@ pub fn svg(source: &Source<'_>, measure: &str, over: &str, by: &[String]) -> Res
         notes.push("The vertical axis does not start at zero.".to_owned());
     }
     notes.extend(source.runs_notes(Some(measure)));
-    notes.extend(source.shared_job_note());
     let name = Name::of_quantity(&measure.name, &measure.meaning);
     let mut drawing = Drawing {
         source,

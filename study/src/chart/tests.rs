@@ -259,7 +259,7 @@ fn histories_are_labelled_by_the_varying_parameters() {
 }
 
 #[test]
-fn points_that_are_one_job_are_shown_and_named() {
+fn points_that_are_one_job_are_one_history() {
     let mut points: Vec<Point> = Vec::new();
     for (number, (panels, flow)) in
         [(5, 0.001), (5, 0.002), (6, 0.001), (6, 0.002)].iter().enumerate()
@@ -270,14 +270,10 @@ fn points_that_are_one_job_are_shown_and_named() {
     points[3].job.id = points[2].job.id.clone();
     let table = with_records(&points, |_, _| {});
     let source = source(&table);
-    let note = "2 points are 1 job: they have the same result.";
-    let map = check::figure(&map::svg(&source, "peak_vz", ["mass_flow_rate", "N"]).unwrap());
-    shows(&map, &["20.0", "= 23.0", "=", "same job as another cell", note]);
     let over = check::figure(&over::svg(&source, "peak_vz", "mass_flow_rate", &[]).unwrap());
-    assert!(contains(&over, note) && contains(&over, "deployed (4)"), "{over:?}");
+    assert!(contains(&over, "deployed (4)"), "{over:?}");
     let lines = history::svg(&source, &["z_rim".to_owned()], [None; 2], &read).unwrap();
     assert_eq!(lines.matches("<polyline").count(), 3 + 4, "one line per job, and the legend");
-    assert!(contains(&check::figure(&lines), note));
 }
 
 #[test]

@@ -3,7 +3,6 @@
 use super::*;
 use crate::chart::borders::Searched;
 use crate::chart::kinds::ChartKind;
-use crate::chart::map::Judged;
 use crate::job::proportion::Proportion;
 use crate::study::{Border, Level, SearchResult};
 
@@ -214,7 +213,7 @@ fn a_map_along_the_searched_parameter_has_the_values_of_every_search() {
         border.levels.sort_by(|a, b| a.value.total_cmp(&b.value));
     }
     searched(&found, "deployed", |source| {
-        let axes = kinds::outcome_axes(source, Judged::Deployed).unwrap();
+        let axes = kinds::outcome_axes(source).unwrap();
         assert!(axes.contains(&"mass_flow_rate".to_owned()), "{axes:?}");
         let svg = map::svg(source, "verdict", ["mass_flow_rate", "strategy"]).unwrap();
         let texts = check::figure(&svg);
@@ -224,7 +223,7 @@ fn a_map_along_the_searched_parameter_has_the_values_of_every_search() {
         let plain = Source { search: None, ..source.clone() };
         let error = map::svg(&plain, "verdict", ["mass_flow_rate", "strategy"]).unwrap_err();
         assert!(error.to_string().contains("37 values along one axis"), "{error}");
-        let axes = kinds::outcome_axes(&plain, Judged::Deployed).unwrap();
+        let axes = kinds::outcome_axes(&plain).unwrap();
         assert!(!axes.contains(&"mass_flow_rate".to_owned()), "others: {axes:?}");
     });
 }

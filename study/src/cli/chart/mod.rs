@@ -34,8 +34,8 @@ pub struct Args {
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',', conflicts_with_all = ["measure"])]
     history: Vec<String>,
     /// Draw this column of the table, over a parameter (--over) or two (--map). `safe` and `verdict` are the
-    /// proportion of runs that are safe, or deployed, as a map; without --map over the two parameters that change
-    /// it the most.
+    /// proportion of runs that are safe, or deployed, as a map; without --map over the first two parameters that
+    /// vary.
     #[arg(long, value_name = "COLUMN", groups = ["with_over", "with_map"])]
     measure: Option<String>,
     /// Draw the borders that the search of the study found, over the first other parameter with numbers, or
