@@ -66,7 +66,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     };
     let text = serde_json::to_string_pretty(&table).unwrap_or_default() + "\n";
     write_output(&Disk, path, text.as_bytes()).map_err(|error| disk_error(path, &error))?;
-    let errors = table.errors.all();
+    let errors = &table.errors;
     let scenes = errors.iter().map(|entry| entry.scenes).max().unwrap_or(0);
     let path = path.display();
     args.options.note(&format!("{path}: {} errors, of up to {scenes} scenes", errors.len()));
