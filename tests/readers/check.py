@@ -225,7 +225,8 @@ def check_history(path, row):
 def check_cube(path, results, frame):
     """Compares the cube with the table and every history."""
     study = json.loads((results / "study.json").read_text())
-    names = [name for axis in study["grid"]["zip"] for name in axis]
+    grid = {name: axis for name, axis in study["grid"].items() if name not in ("points", "filter")}
+    names = [name for key, axis in grid.items() for group in (axis if key == "zip" else [[key]]) for name in group]
     with xr.open_dataset(path, engine="h5netcdf") as cube:
         check(cube.attrs["format"] == "billow-cube" and cube.attrs["complete"] == 1, f"{path}: {cube.attrs['format']}")
         check(cube.attrs["study"] == (results / "study.json").read_text(), f"{path}: another study")

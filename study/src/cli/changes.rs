@@ -8,7 +8,7 @@ use crate::platform::provenance::PHYSICS_VERSION;
 use crate::scene::summary;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
-use crate::study::{JOB_LIMITS, LIMITS, Study, UNITS};
+use crate::study::{JOB_LIMITS, Study, UNITS};
 
 /// The study of a given file where it differs from that of the results in its limits alone: limits judge stored rows and
 /// change no job. Says on stderr in which keys it differs.
@@ -17,10 +17,10 @@ use crate::study::{JOB_LIMITS, LIMITS, Study, UNITS};
 /// A study.json that cannot be read.
 pub fn other_limits(of: &Stored<'_>, study: Study, path: &Path) -> Result<Option<Study>> {
     let stored = &of.study;
-    if of.results.holds(&study.name, &study.resolved())? {
+    if of.results.holds(&study.name, study.file())? {
         return Ok(None);
     }
-    if study.result_limits() != stored.result_limits() && jobs_of(stored) == jobs_of(&study) {
+    if study.result_limits() != stored.result_limits() && stored.plans_as(&study) {
         let limits = |study: &Study| match study.result_limits() {
             [] => "none".to_owned(),
             limits => limits.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
@@ -41,29 +41,21 @@ pub fn other_limits(of: &Stored<'_>, study: Study, path: &Path) -> Result<Option
     Ok(None)
 }
 
-/// A study without what changes no job.
-fn jobs_of(study: &Study) -> serde_json::Value {
-    let mut json = serde_json::to_value(study.resolved()).unwrap_or_default();
-    if let Some(keys) = json.as_object_mut() {
-        keys.retain(|name, _| ![UNITS, JOB_LIMITS, LIMITS, "question"].contains(&name.as_str()));
-    }
-    json
-}
-
 /// The keys in which two studies differ, with both values: "film.thickness 2.54e-5 → 3e-5".
 fn between(from: &Study, to: &Study) -> Vec<String> {
     const MAX_SHOWN: usize = 4;
     const GRID: &str = "grid";
     let values = |study: &Study| -> BTreeMap<String, String> {
-        let mut json = serde_json::to_value(study.resolved()).unwrap_or_default();
+        let mut json = serde_json::to_value(study.file()).unwrap_or_default();
         // The grid is named as a whole.
         // How a number is shown is no change, nor are the limits of jobs.
         json.as_object_mut().and_then(|keys| keys.remove(UNITS));
         json.as_object_mut().and_then(|keys| keys.remove(JOB_LIMITS));
-        let grid = json.as_object_mut().and_then(|keys| keys.remove("grid")).unwrap_or_default();
+        json.as_object_mut().and_then(|keys| keys.remove(GRID));
+        let grid = serde_json::to_string(&study.file().get(GRID)).unwrap_or_default();
         let rows = summary::rows(&json).into_iter();
         rows.map(|row| (row[0].to_string(), row[1].to_string()))
-            .chain([(GRID.to_owned(), grid.to_string())])
+            .chain([(GRID.to_owned(), grid)])
             .collect()
     };
     let (old, new) = (values(from), values(to));
@@ -92,16 +84,19 @@ pub fn note_before_run(results: &Results<'_>, study: &Study) -> Result<()> {
     // A folder of another study is refused by the run itself.
     // A damaged study.json is written again by the run itself.
     let Ok(owner) = results.owner() else { return Ok(()) };
-    if owner.as_ref() != Some(&study.name) || results.holds(&study.name, &study.resolved())? {
+    if owner.as_ref() != Some(&study.name) || results.holds(&study.name, study.file())? {
         return Ok(());
     }
     let Ok(stored) = Study::load(&results.study_path(), &[]) else { return Ok(()) };
-    eprintln!(
-        "note: {} was last run for another form of this study ({}): its table follows this run; \
-         finished jobs of both are kept. --results DIR keeps both tables",
-        results.root().display(),
-        between(&stored, study).join(", ")
-    );
+    let changes = between(&stored, study);
+    if !changes.is_empty() {
+        eprintln!(
+            "note: {} was last run for another form of this study ({}): its table follows this run; \
+             finished jobs of both are kept. --results DIR keeps both tables",
+            results.root().display(),
+            changes.join(", ")
+        );
+    }
     Ok(())
 }
 

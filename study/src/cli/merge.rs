@@ -69,7 +69,7 @@ fn copy(sources: &[PathBuf], target: &Path, stop: &Stop) -> Result<Merged> {
     let others: Vec<Results<'_>> =
         sources.into_iter().filter(|source| source.root() != target).collect();
     let target = Results::new(&Disk, target);
-    merge::merge(&others, &target, (&study.name, &study.resolved()), stop)
+    merge::merge(&others, &target, (&study.name, study.file()), stop)
 }
 
 /// The folders of the tasks of `billow submit`.

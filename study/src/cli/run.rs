@@ -137,7 +137,7 @@ pub(super) fn run_study(
     let summary = runner::run(
         &Run {
             name: &study.name,
-            study: &study.resolved(),
+            study: study.file(),
             planner: &|finished| plan::next_jobs(study, finished),
             result_limits: study.result_limits(),
             table: &|points, records| Table::of_study(study, points, records),

@@ -91,7 +91,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         let texts = (!missing.is_empty()).then_some([array.as_str(), merge.as_str()]);
         return print_scripts(&tasks, &study.name, texts, args.output.format(), out);
     }
-    merge::prepare(&results, (&study.name, &study.resolved()))?;
+    merge::prepare(&results, (&study.name, study.file()))?;
     let array = submission::write(&results, "array.sh", &array)?;
     let merge = submission::write(&results, "merge.sh", &merge)?;
     let queued = slurm::submit(&array, &merge)?;

@@ -4,6 +4,8 @@ use std::fmt::{self, Write as _};
 
 use serde::ser::{Serialize, Serializer};
 
+use crate::input::value::Value;
+
 /// A JSON value: objects in file order, no key twice, whole numbers distinct from others.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Json {
@@ -36,15 +38,20 @@ impl Json {
         members.iter_mut().find(|(name, _)| name == key).map(|(_, value)| value)
     }
 
+    /// The value of a key of an object, `null` at its end where it has none; `None` for another value.
+    pub fn entry(&mut self, key: &str) -> Option<&mut Self> {
+        let Self::Object(members) = self else { return None };
+        let position = members.iter().position(|(name, _)| name == key).unwrap_or_else(|| {
+            members.push((key.to_owned(), Self::Null));
+            members.len() - 1
+        });
+        Some(&mut members[position].1)
+    }
+
     /// Sets a key of an object: replaces its value, or adds it as the last one.
     pub fn set(&mut self, key: &str, value: Self) {
-        match self.get_mut(key) {
-            Some(member) => *member = value,
-            None => {
-                if let Self::Object(members) = self {
-                    members.push((key.to_owned(), value));
-                }
-            }
+        if let Some(member) = self.entry(key) {
+            *member = value;
         }
     }
 
@@ -106,21 +113,14 @@ impl Serialize for Json {
     }
 }
 
-impl From<serde_json::Value> for Json {
-    fn from(value: serde_json::Value) -> Self {
+impl From<&Value> for Json {
+    fn from(value: &Value) -> Self {
         match value {
-            serde_json::Value::Null => Self::Null,
-            serde_json::Value::Bool(value) => Self::Bool(value),
-            serde_json::Value::Number(number) => number
-                .as_i64()
-                .map_or_else(|| Self::Number(number.as_f64().unwrap_or(f64::NAN)), Self::Integer),
-            serde_json::Value::String(text) => Self::Text(text),
-            serde_json::Value::Array(items) => {
-                Self::List(items.into_iter().map(Self::from).collect())
-            }
-            serde_json::Value::Object(members) => Self::Object(
-                members.into_iter().map(|(key, value)| (key, Self::from(value))).collect(),
-            ),
+            Value::Null => Self::Null,
+            Value::Bool(value) => Self::Bool(*value),
+            Value::Integer(value) => Self::Integer(*value),
+            Value::Number(value) => Self::Number(*value),
+            Value::Text(value) => Self::Text(value.clone()),
         }
     }
 }

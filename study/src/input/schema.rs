@@ -214,7 +214,7 @@ fn axis() -> Json {
     };
     let mut range = object(RANGE_KEYS, &["from", "to", "step"], &["from", "to"]);
     range["oneOf"] = json!([{"required": ["steps"]}, {"required": ["step"]}]);
-    let search = object(SEARCH_KEYS, &["bisect", "tolerance"], &["bisect", "on"]);
+    let search = object(SEARCH_KEYS, &["bisect"], &["bisect", "on"]);
     json!({"oneOf": [{"type": "array", "minItems": 1}, range, search]})
 }
 

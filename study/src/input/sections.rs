@@ -1,18 +1,16 @@
-//! Reads the settings of a file from its tree, and writes them as JSON.
+//! Reads the settings of a file from its tree.
 
 use std::fmt::Write as _;
 
-use serde_json::{Map, json};
-
 use crate::input::json::Json;
-use crate::input::keys::{KEYS, Key, STRATEGY_KEYS, STUDY, Table, WINDOW_KEYS, position};
+use crate::input::keys::{KEYS, STRATEGY_KEYS, STUDY, Table, WINDOW_KEYS, position};
 use crate::input::object::object;
 use crate::input::plausible::Implausible;
 use crate::input::settings::{Settings, Strategy};
 use crate::input::source::{Source, shown};
 use crate::input::strategy::{self, Row};
 use crate::input::supports;
-use crate::input::value::{Value, brief_number, json_value};
+use crate::input::value::{Value, brief_number};
 use crate::platform::error::InputError;
 use crate::platform::nearest::did_you_mean;
 
@@ -96,37 +94,23 @@ impl Settings {
         self.strategies.insert(name.to_owned(), strategy);
     }
 
-    /// Settings, strategies and supports, with every value they have.
-    pub fn to_json(&self) -> serde_json::Value {
-        let mut json = json!({});
-        for (key, value) in self.table.keys.iter().zip(&self.values) {
-            if *value == Value::Null {
-                continue;
+    /// Writes the default of every key that the tree does not give into it.
+    pub fn write_defaults(&self, tree: &mut Json) {
+        let values = self.table.keys.iter().zip(&self.values);
+        for (key, value) in values.filter(|(_, value)| **value != Value::Null) {
+            let object = Some(&mut *tree);
+            let parts = key.path.split('.');
+            let member = parts.fold(object, |object, part| {
+                let member = object?.entry(part)?;
+                if *member == Json::Null && part != key.leaf() {
+                    *member = Json::Object(Vec::new());
+                }
+                Some(member)
+            });
+            if let Some(member) = member.filter(|member| **member == Json::Null) {
+                *member = Json::from(value);
             }
-            let member = key.path.split('.').fold(&mut json, |object, part| &mut object[part]);
-            *member = json_value(value);
         }
-        let members = |keys: &[Key], start: usize| {
-            let given = keys.iter().zip(&self.values[start..]);
-            let given = given.filter(|(_, value)| **value != Value::Null);
-            given
-                .map(|(key, value)| (key.path.to_owned(), json_value(value)))
-                .collect::<Map<_, _>>()
-        };
-        for (name, Strategy { start, windows }) in &self.strategies {
-            let first = start + STRATEGY_KEYS.len();
-            let windows =
-                (0..*windows).map(|n| members(WINDOW_KEYS, first + n * WINDOW_KEYS.len()));
-            let windows: Vec<_> = windows.collect();
-            json["strategies"][name] = members(STRATEGY_KEYS, *start).into();
-            json["strategies"][name]["inflow"] = json!(windows);
-        }
-        let supports = self
-            .supports
-            .iter()
-            .map(|support| json!({"on": supports::place_name(support.on), "fix": support.fix}));
-        json["supports"] = supports.collect::<Vec<_>>().into();
-        json
     }
 }
 

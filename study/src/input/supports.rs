@@ -8,11 +8,6 @@ use crate::input::object::{Object, list};
 use crate::input::source::Source;
 use crate::platform::error::InputError;
 
-/// Name of a place that a support acts on.
-pub(crate) fn place_name(place: SupportLocation) -> &'static str {
-    SUPPORT_PLACES.iter().find(|known| known.value == place).map_or("", |known| known.name)
-}
-
 /// Supports in the order of [`SUPPORT_PLACES`], one for each place, components in the order x y z:
 /// equal supports give equal jobs.
 pub(crate) fn read(json: Option<&Json>, source: &Source) -> Result<Vec<Support>, InputError> {

@@ -18,7 +18,7 @@ pub struct Exclusive<'a> {
 
 /// Clears a folder whose lock this process holds alone: temporary files and invalid journal
 /// lines. Jobs that ran in a process that died are noted in the journal. With a study, its name and its
-/// resolved text, study.json and the journal are those of this study.
+/// file, study.json and the journal are those of this study.
 ///
 /// # Errors
 /// [`crate::platform::error::Error::Disk`], also for a folder of another study.

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::num::NonZero;
 use std::path::Path;
-use std::sync::LazyLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use billow_solver::mechanics::material::Regime;
@@ -135,7 +134,7 @@ pub fn run<'a>(
     planner: &'a dyn Fn(&[FinishedRow]) -> Option<Generation>,
     executor: &'a dyn Executor,
 ) -> Run<'a> {
-    static STUDY: LazyLock<Json> = LazyLock::new(|| serde_json::json!({}).into());
+    static STUDY: Json = Json::Object(Vec::new());
     Run {
         name: "test",
         study: &STUDY,

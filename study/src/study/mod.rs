@@ -68,6 +68,8 @@ pub struct Study {
     pub name: String,
     /// The question it answers, in words.
     pub question: String,
+    /// Its file, with overrides and defaults.
+    file: Json,
     /// What `--set` replaces in the file.
     notes: Vec<String>,
     /// Warnings about its values.
@@ -153,8 +155,11 @@ impl Study {
         meshes::refuse_other_models(&grid, &points, &source)?;
         let name = study_name(&settings, stem, &source)?;
         let (question, warnings) = (question(&settings), source.warnings());
+        settings.write_defaults(&mut tree);
+        tree.set("name", Json::Text(name.clone()));
         Ok(Self {
             name,
+            file: tree,
             question,
             notes,
             warnings,
@@ -211,37 +216,14 @@ impl Study {
         job_limits::of(|key| self.settings.at(key).clone())
     }
 
-    /// The resolved study: units converted, defaults written out, axes as lists. It is a study file
-    /// itself: read again, it plans the same jobs in the same order, with the same order of
-    /// parameters.
-    pub fn resolved(&self) -> Json {
-        let mut json = self.settings.to_json();
-        json["name"] = self.name.as_str().into();
-        let mut json = Json::from(json);
-        let units = self.units.iter();
-        let units: Vec<(String, Json)> =
-            units.map(|(name, symbol)| (name.to_owned(), Json::Text(symbol.to_owned()))).collect();
-        if !units.is_empty() {
-            json.set(UNITS, Json::Object(units));
-        }
-        if !self.result_limits.is_empty() {
-            json.set(LIMITS, result_limits::to_json(&self.result_limits));
-        }
-        let replicates = self.grid.resolved_replicates();
-        if !replicates.is_empty() {
-            json.set(REPLICATES, Json::Object(replicates));
-        }
-        let meshes = self.meshes().into_iter().map(|n| Json::Integer(n.into())).collect::<Vec<_>>();
-        if !meshes.is_empty()
-            && let Some(solver) = json.get_mut("solver")
-        {
-            solver.set("meshes", Json::List(meshes));
-        }
-        let grid = self.grid.resolved();
-        if grid != Json::Object(Vec::new()) {
-            json.set("grid", grid);
-        }
-        json
+    /// Its file as it ran: overrides applied, the defaults of keys written out, its name.
+    pub fn file(&self) -> &Json {
+        &self.file
+    }
+
+    /// Whether another study plans the same points in the same order.
+    pub fn plans_as(&self, other: &Self) -> bool {
+        (&self.points, &self.grid) == (&other.points, &other.grid)
     }
 
     /// Values that are probably mistaken: likely forgotten units, and times that do not fit the run.

@@ -287,7 +287,7 @@ pub(crate) const GRID_MEANINGS: &[(&str, &str)] = &[
     (
         "grid.<key>.bisect",
         "A search: {\"bisect\": [low, high], \"on\": \"verdict\", \"safe\" or a limit, \"tolerance\": a percentage (of \
-         high - low; with logarithmic spacing of the value) or a quantity, \"spacing\"}. It finds where the outcome \
+         high - low; with logarithmic spacing of the value), \"spacing\"}. It finds where the outcome \
          changes, for every combination of the other axes.",
     ),
     ("grid.zip", "Groups of keys that vary together: lists of equal length."),

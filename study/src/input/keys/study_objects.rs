@@ -2,9 +2,10 @@
 
 use super::key::Default::{Absent, Number, Required, Word};
 use super::key::{Key, KeyKind};
-use super::row::key;
+use super::row::{from, key};
 use super::study::{CLOCK, FLOW_RATE, GAS_MASS, INFLOW_MASS, KELVIN};
 use super::words::{self, SUPPORT_PLACES, explained, words};
+use crate::input::units::Dimension;
 
 /// The keys of a strategy; paths are those within `strategies.<name>`.
 #[rustfmt::skip]
@@ -49,9 +50,11 @@ pub static RANGE_KEYS: &[Key] = &[
     key("spacing", KeyKind::Choice(SPACINGS), Word("linear"), "\"log\"", "How its values are spaced."),
 ];
 
-/// The keys of a search, beside `bisect` and `tolerance`, which the varied key reads.
+/// The keys of a search, beside `bisect`, which the varied key reads.
 #[rustfmt::skip]
 pub static SEARCH_KEYS: &[Key] = &[
     key("on", KeyKind::Text, Required, "\"verdict\"", "What changes: verdict, safe, or a measure with a limit."),
+    key("tolerance", from(Dimension::Number, 1e-6, 1.0), Number(0.05), "\"5 %\"",
+        "Width of the border, as a fraction of high - low; with logarithmic spacing of the value."),
     key("spacing", KeyKind::Choice(SPACINGS), Word("linear"), "\"log\"", "How its values are spaced."),
 ];

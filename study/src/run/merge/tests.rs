@@ -34,7 +34,7 @@ fn run_part(study: &Study, root: &Path, selection: Selection) -> Summary {
     let results = Results::new(&Disk, root);
     let run = Run {
         name: &study.name,
-        study: &study.resolved(),
+        study: study.file(),
         table: &|points, records| Table::of_study(study, points, records),
         selection,
         known: results.known().unwrap(),
@@ -71,14 +71,14 @@ fn parts_in_folders_of_their_own_give_the_table_of_the_whole() {
     assert_eq!(ran, 8);
     let sources: Vec<_> = ["1", "2", "3"].map(path).into();
     let sources: Vec<Results<'_>> = sources.iter().map(|path| Results::new(&Disk, path)).collect();
-    let resolved = study.resolved();
+    let file = study.file();
     let target = path("all");
     let target = Results::new(&Disk, &target);
-    let merged = merge(&sources, &target, (&study.name, &resolved), &Stop::new()).unwrap();
+    let merged = merge(&sources, &target, (&study.name, file), &Stop::new()).unwrap();
     assert_eq!(merged, Merged { copied: 8, ..Merged::default() });
     assert_eq!(table(&path("all")), table(&path("whole")));
     // A second time there is nothing to copy, and a run finds nothing to do.
-    let again = merge(&sources, &target, (&study.name, &resolved), &Stop::new()).unwrap();
+    let again = merge(&sources, &target, (&study.name, file), &Stop::new()).unwrap();
     assert_eq!(again, Merged { same: 8, ..Merged::default() });
     assert_eq!(run_part(&study, &path("all"), Selection::All).ran, 0);
 }
@@ -88,13 +88,13 @@ fn other_studies_other_bits_and_damaged_histories_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     let study = study();
-    let resolved = study.resolved();
+    let file = study.file();
     run_part(&study, &path("one"), Selection::All);
     run_part(&study, &path("two"), part("1/2"));
     let sources = [path("one")];
     let sources: Vec<Results<'_>> = sources.iter().map(|path| Results::new(&Disk, path)).collect();
     let (new, two) = (path("new"), path("two"));
-    let refused = merge(&sources, &Results::new(&Disk, &new), ("other", &resolved), &Stop::new());
+    let refused = merge(&sources, &Results::new(&Disk, &new), ("other", file), &Stop::new());
     assert!(refused.unwrap_err().to_string().contains("not results of the study \"other\""));
     assert!(!new.exists());
 
@@ -107,7 +107,7 @@ fn other_studies_other_bits_and_damaged_histories_are_named() {
     let damaged = sources[0].journal().unwrap();
     let damaged = damaged.records.keys().find(|id| !journal.records.contains_key(*id)).unwrap();
     fs::write(sources[0].job_path(damaged), "x").unwrap();
-    let merged = merge(&sources, &target, (&study.name, &resolved), &Stop::new()).unwrap();
+    let merged = merge(&sources, &target, (&study.name, file), &Stop::new()).unwrap();
     assert_eq!((merged.copied, merged.same), (3, 3));
     assert_eq!(
         (merged.different, merged.damaged),

@@ -49,7 +49,7 @@ pub type TableOf<'a> = dyn Fn(&[Point], &BTreeMap<JobId, Record>) -> Table + 'a;
 pub struct Run<'a> {
     /// Name of the study.
     pub name: &'a str,
-    /// The resolved study, for study.json.
+    /// The file of the study, for study.json.
     pub study: &'a Json,
     /// [`crate::study::plan::next_jobs`] of that study.
     pub planner: &'a dyn Fn(&[FinishedRow]) -> Option<Generation>,

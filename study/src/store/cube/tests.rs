@@ -34,7 +34,7 @@ fn ran(varied: &str, run: &dyn Fn(usize) -> Option<Deployment>) -> Folder {
     let folder = tempfile::tempdir().unwrap();
     let results = Results::new(&Disk, folder.path());
     let mut journal = Journal::default();
-    results.write_study(&study.name, &study.resolved(), &journal).unwrap();
+    results.write_study(&study.name, study.file(), &journal).unwrap();
     let points = planned(&study, &journal);
     for (number, point) in points.iter().enumerate() {
         if point.infeasible.is_some() {

@@ -1,9 +1,8 @@
-//! study.json: which study a results folder belongs to. It is the resolved study, a study file, with a
+//! study.json: which study a results folder belongs to. It is the study file as it ran, with a
 //! checksum ([`billow_solver::platform::seal`]).
 //!
 //! The journal holds the text too, so that a damaged file can be restored.
 
-use std::collections::BTreeMap;
 use std::io;
 
 use billow_solver::platform::seal;
@@ -11,7 +10,6 @@ use serde::Deserialize;
 
 use super::Results;
 use crate::input::json::Json;
-use crate::input::units::DisplayUnits;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{self, disk_error};
 use crate::store::journal::Journal;
@@ -28,9 +26,6 @@ struct Owner {
     format: String,
     version: u64,
     name: String,
-    /// Units in which quantities are shown, by name of parameter or column.
-    #[serde(default)]
-    units: BTreeMap<String, String>,
 }
 
 /// What is on disk.
@@ -41,7 +36,7 @@ enum State {
     Damaged(String),
 }
 
-/// The text of study.json for a resolved study.
+/// The text of study.json for the file of a study.
 fn study_text(name: &str, study: &Json) -> io::Result<String> {
     let mut study = study.clone();
     study.set("format", Json::Text(FORMAT.to_owned()));
@@ -51,7 +46,7 @@ fn study_text(name: &str, study: &Json) -> io::Result<String> {
     Ok(seal::seal(&(object + "\n")))
 }
 
-/// A resolved study without the units in which its quantities are shown, and the limits of its jobs.
+/// The file of a study without the units in which its quantities are shown, and the limits of its jobs.
 fn without_units(mut study: Json) -> Json {
     if let Json::Object(members) = &mut study {
         members.retain(|(name, _)| name != UNITS && name != JOB_LIMITS);
@@ -66,18 +61,6 @@ impl Results<'_> {
     /// [`Error::Disk`] when study.json cannot be read, is not valid, or is of another version.
     pub fn owner(&self) -> Result<Option<String>> {
         Ok(self.read_owner()?.map(|owner| owner.name))
-    }
-
-    /// The units in which the study's quantities are shown; SI without study.json.
-    ///
-    /// # Errors
-    /// As [`Self::owner`].
-    pub fn display_units(&self) -> Result<DisplayUnits> {
-        let mut units = DisplayUnits::si();
-        for (name, symbol) in self.read_owner()?.iter().flat_map(|owner| &owner.units) {
-            units.set(name, symbol);
-        }
-        Ok(units)
     }
 
     fn read_owner(&self) -> Result<Option<Owner>> {
@@ -144,7 +127,7 @@ impl Results<'_> {
     }
 
     /// Writes study.json and returns its text. An equal file is not written again. A damaged file is kept in
-    /// the folder `damaged`. `study` is the resolved study, an object; `journal` is that of the folder.
+    /// the folder `damaged`. `study` is the file of the study, an object; `journal` is that of the folder.
     ///
     /// # Errors
     /// [`Error::Disk`] when the folder belongs to another study, or to a program with another version of the file.
@@ -196,7 +179,7 @@ impl Results<'_> {
         Ok(())
     }
 
-    /// Whether the folder was last run for this resolved study. The units in which quantities are shown, and the limits
+    /// Whether the folder was last run for this file of a study. The units in which quantities are shown, and the limits
     /// of jobs, do not count.
     ///
     /// # Errors
@@ -211,7 +194,7 @@ impl Results<'_> {
             return Ok(true);
         }
         let Ok(stored) = Study::load(&path, &[]) else { return Ok(false) };
-        let stored = text(&stored.name, &without_units(stored.resolved()))?;
+        let stored = text(&stored.name, &without_units(stored.file().clone()))?;
         Ok(stored == text(name, &without_units(study.clone()))?)
     }
 }

@@ -6,10 +6,9 @@ use super::REPLICATES;
 use super::column::Column;
 use super::filter::Filter;
 use super::search::Search;
-use crate::input::json::Json;
 use crate::input::settings::Settings;
 use crate::input::source::Source;
-use crate::input::value::{Value, json_value};
+use crate::input::value::Value;
 use crate::job::result_limit::ResultLimit;
 use crate::platform::error::InputError;
 
@@ -36,8 +35,6 @@ pub(super) struct Grid {
     pub filter: Option<Filter>,
     /// The search of a border along one of the axes.
     pub search: Option<Search>,
-    /// Names of the measures with a limit.
-    limit_names: Vec<String>,
 }
 
 /// One axis: keys that vary together.
@@ -108,49 +105,5 @@ impl Grid {
     pub fn repeated(&self) -> Vec<String> {
         let columns = self.replicates().flat_map(|axis| &axis.columns);
         columns.map(|column| self.columns[*column].name.clone()).collect()
-    }
-
-    /// The replicates as JSON; empty without any.
-    pub fn resolved_replicates(&self) -> Vec<(String, Json)> {
-        let member = |axis: &Axis| {
-            let values = axis.rows.iter().map(|row| Json::from(json_value(&row[0]))).collect();
-            (self.columns[axis.columns[0]].name.clone(), Json::List(values))
-        };
-        let replicates = self.axes.iter().filter(|axis| axis.kind == AxisKind::Replicates);
-        replicates.map(member).collect()
-    }
-
-    /// The grid as JSON: each axis is a group of `zip`, since a list keeps the order of the axes and an
-    /// object may not.
-    pub fn resolved(&self) -> Json {
-        let name = |column: usize| self.columns[column].name.clone();
-        let json = |value: &Value| Json::from(json_value(value));
-        let mut grid = Vec::new();
-        let grouped: Vec<&Axis> = self.axes.iter().filter(|axis| !axis.kind.repeats()).collect();
-        let groups = grouped.iter().map(|axis| {
-            if let (AxisKind::Search, Some(search)) = (axis.kind, &self.search) {
-                let json = search.to_json(&|limit| self.limit_names[limit].clone());
-                return Json::Object(vec![(name(axis.columns[0]), json)]);
-            }
-            let columns = axis.columns.iter().enumerate().map(|(index, column)| {
-                let values = axis.rows.iter().map(|row| json(&row[index])).collect();
-                (name(*column), Json::List(values))
-            });
-            Json::Object(columns.collect())
-        });
-        if !grouped.is_empty() {
-            grid.push(("zip".to_owned(), Json::List(groups.collect())));
-        }
-        let points = self.points.iter().map(|point| {
-            let members = point.iter().map(|(column, value)| (name(*column), json(value)));
-            Json::Object(members.collect())
-        });
-        if !self.points.is_empty() {
-            grid.push(("points".to_owned(), Json::List(points.collect())));
-        }
-        if let Some(filter) = &self.filter {
-            grid.push(("filter".to_owned(), Json::Text(filter.text().to_owned())));
-        }
-        Json::Object(grid)
     }
 }

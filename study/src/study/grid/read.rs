@@ -24,9 +24,7 @@ const STRATEGY: usize = position(KEYS, "strategy");
 impl Grid {
     /// Reads the grid and the replicates of a study file.
     pub fn read(tree: &Json, context: Context<'_>) -> Result<Self, InputError> {
-        let limits = context.limits.iter();
-        let limit_names = limits.map(|limit| limit.measure.name().to_owned()).collect();
-        let mut grid = Self { limit_names, ..Self::default() };
+        let mut grid = Self::default();
         let members = match tree.get("grid") {
             Some(json) => object(json, &STUDY, "grid", context.source)?,
             None => &[],

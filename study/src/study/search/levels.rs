@@ -107,14 +107,13 @@ pub(super) fn next(search: &Search, levels: &[Level], replicates: usize) -> Vec<
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Criterion, Spacing, Tolerance};
+    use super::super::{Criterion, Spacing};
     use super::*;
 
-    fn search(tolerance: Tolerance, spacing: Spacing) -> Search {
+    fn search(tolerance: f64, spacing: Spacing) -> Search {
         let criterion = Criterion::Deployed;
-        let written_tolerance = crate::input::json::Json::Null;
         let ends = [1.0, 9.0];
-        Search { column: 0, ends, spacing, criterion, tolerance, written_tolerance, integer: false }
+        Search { column: 0, ends, spacing, criterion, tolerance, integer: false }
     }
 
     /// Runs a search against a rule: number of runs of `replicates` that meet the criterion at a value.
@@ -139,11 +138,9 @@ mod tests {
 
     #[test]
     fn a_search_encloses_the_border_within_its_tolerance() {
-        for (tolerance, spacing) in [
-            (Tolerance::Absolute(0.1), Spacing::Linear),
-            (Tolerance::Relative(0.01), Spacing::Linear),
-            (Tolerance::Relative(0.02), Spacing::Log),
-        ] {
+        for (tolerance, spacing) in
+            [(0.0125, Spacing::Linear), (0.01, Spacing::Linear), (0.02, Spacing::Log)]
+        {
             for border in [1.001, 2.7, 5.0, 8.99] {
                 let search = search(tolerance, spacing);
                 let levels = run(&search, 1, &|value| usize::from(value > border));
@@ -174,7 +171,7 @@ mod tests {
                 3
             }
         };
-        let search = search(Tolerance::Absolute(0.1), Spacing::Linear);
+        let search = search(0.0125, Spacing::Linear);
         let levels = run(&search, 5, &rule);
         let SearchResult::Border { low, high, met_below } = outcome(&levels, 5) else { panic!() };
         assert!(met_below && low < 4.0 && high > 6.0);
@@ -183,7 +180,7 @@ mod tests {
 
     #[test]
     fn what_changes_twice_is_not_monotone_and_what_never_changes_has_no_border() {
-        let search = search(Tolerance::Absolute(0.1), Spacing::Linear);
+        let search = search(0.0125, Spacing::Linear);
         let twice = run(&search, 1, &|value| usize::from((3.0..6.0).contains(&value)));
         assert_eq!(outcome(&twice, 1), SearchResult::NotMonotone(vec![[1.0, 3.0], [5.0, 7.0]]));
         assert_eq!(twice.len(), 5, "no more jobs");
@@ -195,12 +192,10 @@ mod tests {
 
     #[test]
     fn runs_that_cannot_be_judged_decide_nothing_and_open_ones_wait() {
-        let mut levels = run(&search(Tolerance::Absolute(3.0), Spacing::Linear), 1, &|value| {
-            usize::from(value > 4.0)
-        });
+        let mut levels = run(&search(0.375, Spacing::Linear), 1, &|value| usize::from(value > 4.0));
         levels[1].met = Proportion::default();
         levels[1].not_judged = 1;
-        let search = search(Tolerance::Absolute(0.1), Spacing::Linear);
+        let search = search(0.0125, Spacing::Linear);
         assert_eq!(
             outcome(&levels, 1),
             SearchResult::Border { low: 1.0, high: 5.0, met_below: false }

@@ -15,8 +15,7 @@ pub(crate) mod replay;
 pub use levels::{Border, Level, SearchResult};
 pub(super) use read::is_search;
 
-use crate::input::json::Json;
-use crate::input::value::{Value, json_value};
+use crate::input::value::Value;
 use crate::job::result_limit::ResultLimit;
 
 /// Number of values with which a search begins. Chosen: enough to see that an outcome changes twice.
@@ -33,10 +32,9 @@ pub(super) struct Search {
     pub spacing: Spacing,
     /// What must hold.
     pub criterion: Criterion,
-    /// Width of the interval at which the search ends.
-    pub tolerance: Tolerance,
-    /// The same as the file writes it.
-    pub written_tolerance: Json,
+    /// Width of the interval at which the search ends, as a fraction: of `high − low`; with logarithmic spacing
+    /// of the value.
+    pub tolerance: f64,
     /// Whether the key holds whole numbers.
     pub integer: bool,
 }
@@ -59,15 +57,6 @@ pub enum Criterion {
     Limit(usize),
     /// Every limit is met.
     Safe,
-}
-
-/// Width of the interval at which a search ends.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Tolerance {
-    /// In the unit of the key, SI.
-    Absolute(f64),
-    /// As a fraction: of `high − low`; with logarithmic spacing of the value.
-    Relative(f64),
 }
 
 impl Criterion {
@@ -106,16 +95,11 @@ impl Search {
     /// The value between two others at which the search goes on; `None` where the interval is as small as
     /// asked for.
     pub fn middle(&self, low: f64, high: f64) -> Option<f64> {
-        let reached = match (self.tolerance, self.spacing) {
-            (Tolerance::Absolute(width), _) => high - low <= width,
-            (Tolerance::Relative(part), Spacing::Linear) => {
-                high - low <= part * (self.ends[1] - self.ends[0])
+        let (reached, middle) = match self.spacing {
+            Spacing::Linear => (high - low <= self.resolution(low), 0.5 * low + 0.5 * high),
+            Spacing::Log => {
+                (high <= low * (1.0 + self.tolerance), libm::sqrt(low) * libm::sqrt(high))
             }
-            (Tolerance::Relative(part), Spacing::Log) => high <= low * (1.0 + part),
-        };
-        let middle = match self.spacing {
-            Spacing::Linear => 0.5 * low + 0.5 * high,
-            Spacing::Log => libm::sqrt(low) * libm::sqrt(high),
         };
         let middle = self.rounded(middle);
         (!reached && low < middle && middle < high).then_some(middle)
@@ -140,33 +124,16 @@ impl Search {
         if self.integer {
             return libm::round(value);
         }
-        let resolution = match (self.tolerance, self.spacing) {
-            (Tolerance::Absolute(width), _) => width,
-            (Tolerance::Relative(part), Spacing::Linear) => part * (self.ends[1] - self.ends[0]),
-            (Tolerance::Relative(part), Spacing::Log) => part * value,
-        };
         let short = format!("{value:.3e}").parse().unwrap_or(value);
-        if (short - value).abs() <= 0.01 * resolution { short } else { value }
+        if (short - value).abs() <= 0.01 * self.resolution(value) { short } else { value }
     }
 
-    /// The axis as a study file has it; `name` gives the name of a limit.
-    pub fn to_json(&self, limit: &dyn Fn(usize) -> String) -> Json {
-        let number = |value: f64| Json::from(json_value(&self.value(value)));
-        let on = match self.criterion {
-            Criterion::Deployed => read::VERDICT.to_owned(),
-            Criterion::Safe => read::SAFE.to_owned(),
-            Criterion::Limit(index) => limit(index),
-        };
-        let spacing = match self.spacing {
-            Spacing::Linear => "linear",
-            Spacing::Log => "log",
-        };
-        let ends = self.ends.map(number).to_vec();
-        Json::Object(vec![
-            ("bisect".to_owned(), Json::List(ends)),
-            ("on".to_owned(), Json::Text(on)),
-            ("tolerance".to_owned(), self.written_tolerance.clone()),
-            ("spacing".to_owned(), Json::Text(spacing.to_owned())),
-        ])
+    /// Width of the interval at which the search ends, near a value.
+    fn resolution(&self, value: f64) -> f64 {
+        self.tolerance
+            * match self.spacing {
+                Spacing::Linear => self.ends[1] - self.ends[0],
+                Spacing::Log => value,
+            }
     }
 }

@@ -1,11 +1,10 @@
 //! Reads `{"bisect": [low, high], "on": …, "tolerance": …, "spacing": …}`, an axis of the grid.
 
-use super::{Criterion, Search, Spacing, Tolerance};
+use super::{Criterion, Search, Spacing};
 use crate::input::json::Json;
 use crate::input::keys::{Key, KeyKind, SEARCH_KEYS};
 use crate::input::object::{Object, list};
 use crate::input::source::Source;
-use crate::input::units::{self, Dimension};
 use crate::job::result_limit::ResultLimit;
 use crate::job::row::ColumnId;
 use crate::platform::error::InputError;
@@ -14,13 +13,9 @@ use crate::platform::nearest::or_nearest;
 /// The member that makes an axis a search.
 const BISECT: &str = "bisect";
 /// The criterion of the verdict.
-pub(super) const VERDICT: &str = "verdict";
+const VERDICT: &str = "verdict";
 /// The criterion of all limits.
-pub(super) const SAFE: &str = "safe";
-/// Width of the border where the file gives none (chosen).
-const DEFAULT_TOLERANCE: &str = "5 %";
-/// Smallest relative tolerance. Chosen: far below what a simulation can tell apart.
-const MIN_RELATIVE_TOLERANCE: f64 = 1e-6;
+const SAFE: &str = "safe";
 
 /// Whether an axis is a search.
 pub(in crate::study) fn is_search(json: &Json) -> bool {
@@ -39,8 +34,7 @@ impl Search {
         limits: &[ResultLimit],
         source: &Source,
     ) -> Result<Self, InputError> {
-        let object =
-            Object::new(json, path, "a search", SEARCH_KEYS, &[BISECT, "tolerance"], source)?;
+        let object = Object::new(json, path, "a search", SEARCH_KEYS, &[BISECT], source)?;
         let refuse = |problem: &str, allowed: &str| Err(source.error(path, json, problem, allowed));
         let integer = match key.kind {
             KeyKind::Integer(..) => true,
@@ -65,10 +59,8 @@ impl Search {
             return refuse("has logarithmic spacing, so `bisect` must begin above 0", allowed);
         }
         let criterion = criterion(&object, limits)?;
-        let default = || Json::Text(DEFAULT_TOLERANCE.to_owned());
-        let written_tolerance = object.given("tolerance").cloned().unwrap_or_else(default);
-        let tolerance = tolerance(&written_tolerance, key, &object, ends)?;
-        Ok(Self { column, ends, spacing, criterion, tolerance, written_tolerance, integer })
+        let tolerance = object.needed("tolerance")?;
+        Ok(Self { column, ends, spacing, criterion, tolerance, integer })
     }
 }
 
@@ -94,42 +86,4 @@ fn criterion(object: &Object<'_>, limits: &[ResultLimit]) -> Result<Criterion, I
         ),
     };
     Err(object.error("on", problem, known().collect::<Vec<_>>().join(", ")))
-}
-
-fn tolerance(
-    json: &Json,
-    key: &Key,
-    object: &Object<'_>,
-    ends: [f64; 2],
-) -> Result<Tolerance, InputError> {
-    let dimension = match key.kind {
-        KeyKind::Quantity(quantity) => quantity.dimension,
-        _ => Dimension::Number,
-    };
-    let refuse = |problem: &str| {
-        let width = match dimension {
-            Dimension::Number => "a number above 0".to_owned(),
-            other => format!("{} above 0 ({})", other.name(), other.units().join(", ")),
-        };
-        let allowed = format!("a percentage of the border, as in \"5 %\", or {width}");
-        Err(object.error("tolerance", problem, allowed))
-    };
-    let (width, is_relative) = match json {
-        Json::Text(text) => {
-            let is_relative = text.trim_end().ends_with('%');
-            let dimension = if is_relative { Dimension::Number } else { dimension };
-            match units::parse(text, dimension) {
-                Ok(width) => (width, is_relative),
-                Err(error) => return refuse(&error.problem),
-            }
-        }
-        Json::Number(number) => (*number, false),
-        Json::Integer(number) => (*number as f64, false),
-        other => return refuse(&format!("is {}, not a quantity", other.kind())),
-    };
-    let unit = if is_relative { 1.0 } else { ends[1] - ends[0] };
-    if width < MIN_RELATIVE_TOLERANCE * unit {
-        return refuse("is not positive, or below a millionth");
-    }
-    Ok(if is_relative { Tolerance::Relative(width) } else { Tolerance::Absolute(width) })
 }
