@@ -156,26 +156,26 @@ fn a_limited_job_is_a_row_and_goes_on_with_a_higher_limit() {
     let output = folder.run(&["run", "grid.json", "-q"]);
     assert_eq!(output.status.code(), Some(1));
     let said = stderr(&output);
-    assert!(said.contains("--again step_limit --job-limit steps=…"), "{said}");
+    assert!(said.contains("--again step_limit --set job_limits.steps=…"), "{said}");
     let failed = ids(&folder, "step_limit");
     assert_eq!((failed.len(), files(&folder, "checkpoints").len()), (1, 1));
     let row = folder.rows("results/grid").pop().unwrap();
     assert!(row["reason"].as_str().unwrap().starts_with("job_limits.steps of 2000 is reached"));
     assert!(row["final_volume"].is_null() && row["content_hash"].is_null(), "{row}");
     let why = folder.stdout(&["job", &failed[0][..8], "results/grid"]);
-    assert!(why.contains("--job-limit steps=…"), "{why}");
+    assert!(why.contains("--set job_limits.steps=…"), "{why}");
 
-    // An attempt of a moment; then one without any limit.
-    let timeout = ["--job-limit", "steps=none", "--job-limit", "wall_time=0.05", "-q"];
+    // An attempt of a moment; then one with enough of both.
+    let timeout = ["--set", "job_limits.steps=1e7", "--set", "job_limits.wall_time=0.05", "-q"];
     let again = ["run", "results/grid", "--again", "step_limit"];
     let output = folder.run(&[&again[..], &timeout].concat());
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert_eq!(ids(&folder, "timeout"), failed);
-    let again = ["run", "results/grid", "--again", "timeout", "--job-limit", "steps=none", "-q"];
-    folder.stdout(&again);
+    let again = ["run", "results/grid", "--again", "timeout"];
+    folder.stdout(&[&again[..], &["--set", "job_limits.wall_time=1 h", "-q"]].concat());
     assert_same_bits(&folder, &whole);
     // The limits are no change of the study.
-    let said = stderr(&folder.run(&["run", "grid.json", "--job-limit", "steps=9"]));
+    let said = stderr(&folder.run(&["run", "grid.json", "--set", "job_limits.steps=9"]));
     assert!(!said.contains("job_limits"), "{said}");
 }
 

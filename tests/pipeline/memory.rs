@@ -66,7 +66,7 @@ fn an_out_of_memory_job_runs_again_with_more_memory() {
     assert_eq!(folder.rows("results/grid")[0]["status"], "out_of_memory");
     let again = ["run", "grid.json", "--again", "out_of_memory", "-q"];
     // The limit of the study refuses a job by its estimate.
-    folder.run(&[&again[..], &["--job-limit", "memory=20 MB"]].concat());
+    folder.run(&[&again[..], &["--set", "job_limits.memory=20 MB"]].concat());
     let row = folder.rows("results/grid").remove(0);
     assert!(row["reason"].as_str().unwrap().contains("job_limits.memory"), "{row}");
     let output = folder.run(&again);

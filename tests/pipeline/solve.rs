@@ -291,7 +291,7 @@ fn a_rigid_plane_moves_as_a_body() {
 fn initial_velocities_add_up() {
     let mut scene = cube(&json!({"positions": "cube.obj"}), &json!({"pressure": 0}));
     scene["start"] = json!({
-        "velocity": [0, 0, "3 m/s"], "velocities": "cube.obj",
+        "velocity": ["1 m/s", 0, "3 m/s"],
         "spin": {"axis": [0, 0, 1], "rate": "10 rad/s"},
     });
     scene["gravity"] = json!(["1 m/s2", 0, -10]);
@@ -300,7 +300,7 @@ fn initial_velocities_add_up() {
     let summary = solved(&scene, &[("cube.obj", CUBE)]);
     let position: Vec<f64> =
         summary["nodes"]["1"].as_array().unwrap().iter().map(|n| n.as_f64().unwrap()).collect();
-    // Vertex 1 starts at (1, 0, 0): velocity (0, 10, 0) by spin, (1, 0, 0) by file, (0, 0, 3) for all.
+    // Vertex 1 starts at (1, 0, 0): velocity (0, 10, 0) by spin, (1, 0, 3) for all.
     for (x, expected) in position.iter().zip([1.0 + 2e-5, 2e-4, 6e-5]) {
         assert!((x - expected).abs() < 5e-6, "{x} {expected}");
     }

@@ -25,7 +25,6 @@ use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
 use crate::store::table::Table;
 use crate::study::Study;
-use crate::study::job_limits::with_options;
 use crate::study::plan;
 
 mod again;
@@ -60,10 +59,6 @@ pub(super) struct RunOptions {
     units: UnitsOption,
     #[command(flatten)]
     threads: ThreadsOption,
-    /// Limit every job: `wall_time`, `steps` or `memory`, for example --job-limit `wall_time`="2 h"; `none`
-    /// removes the limit of the study; can be repeated.
-    #[arg(long, value_name = "KEY=VALUE")]
-    job_limit: Vec<String>,
     #[command(flatten)]
     pub(super) output: OutputOptions,
     #[command(flatten)]
@@ -124,7 +119,7 @@ pub(super) fn run_study(
     })?;
     let instruction_set = super::instruction_set::selected()?;
     let (threads, note) = memory::threads(options.threads.count()?);
-    let limits = with_options(study.job_limits(), &options.job_limit)?;
+    let limits = study.job_limits();
     let memory = Memory::new(threads);
     memory.check()?;
     if !options.progress.quiet {

@@ -9,7 +9,7 @@ use serde_json::{Map, Value as Json, json};
 
 use crate::input::keys::listing::{FileKind, Parts};
 use crate::input::keys::{
-    self, Default, FLAT, GRAVITY, KEYS, Key, KeyKind, NEAR, Quantity, RANGE_KEYS, SEARCH_KEYS,
+    self, Default, GRAVITY, KEYS, Key, KeyKind, NEAR, Quantity, RANGE_KEYS, SEARCH_KEYS,
 };
 use crate::input::units::Dimension;
 use crate::input::value::{Value, json_value};
@@ -159,14 +159,7 @@ fn form(file: FileKind, path: &str) -> Json {
             along["type"] = json!(["number", "string", "array"]);
             along
         }
-        "mesh.reference" => {
-            let KeyKind::Quantity(length) = FLAT else { unreachable!("a length") };
-            let corner = json!({
-                "type": "array", "items": quantity_form(length), "minItems": 2, "maxItems": 3,
-            });
-            let face = json!({"type": "array", "items": corner, "minItems": 3});
-            json!({"type": ["string", "array"], "items": face})
-        }
+        "mesh.reference" => json!({"type": "string"}),
         "mesh.closure" => json!({"type": ["string", "array"], "items": {"type": "string"}}),
         "supports[].nodes" => {
             json!({"type": "array", "items": {"type": "integer", "minimum": 0}, "minItems": 1})

@@ -4,7 +4,6 @@
 //! id = first 16 bytes of SHA-256(canonical JSON of {physics_version, scene}), in hexadecimal digits
 //! ```
 
-use std::cell::RefCell;
 use std::fmt;
 use std::io::{self, Write};
 
@@ -103,35 +102,18 @@ pub fn common_prefix_length(a: &str, b: &str) -> usize {
 /// # Panics
 /// For data that JSON cannot hold (a map with keys that are not texts). This is a mistake in code.
 pub fn canonical_json<T: Serialize>(data: &T) -> String {
-    let text = RefCell::new(Vec::new());
-    let formatter = Canonical { text: &text, objects: Vec::new() };
-    let mut serializer = Serializer::with_formatter(Shared(&text), formatter);
-    data.serialize(&mut serializer).unwrap_or_else(|error| unreachable!("{error}"));
-    String::from_utf8(text.into_inner()).unwrap_or_else(|error| unreachable!("{error}"))
+    // The map of a JSON value is sorted.
+    let sorted = serde_json::to_value(data).unwrap_or_else(|error| unreachable!("{error}"));
+    let mut text = Vec::new();
+    let mut serializer = Serializer::with_formatter(&mut text, Canonical);
+    sorted.serialize(&mut serializer).unwrap_or_else(|error| unreachable!("{error}"));
+    String::from_utf8(text).unwrap_or_else(|error| unreachable!("{error}"))
 }
 
-/// The text that the serializer appends to, and in which [`Canonical`] sorts.
-struct Shared<'a>(&'a RefCell<Vec<u8>>);
+/// Writes numbers in their shortest digits.
+struct Canonical;
 
-impl Write for Shared<'_> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0.borrow_mut().extend_from_slice(bytes);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-/// Sorts the members of an object when it ends.
-struct Canonical<'a> {
-    text: &'a RefCell<Vec<u8>>,
-    /// For each open object the start of every member, and the end of its key.
-    objects: Vec<Vec<[usize; 2]>>,
-}
-
-impl Formatter for Canonical<'_> {
+impl Formatter for Canonical {
     fn write_f64<W: ?Sized + Write>(&mut self, writer: &mut W, value: f64) -> io::Result<()> {
         #[expect(clippy::cast_possible_truncation, reason = "whole and below 2^53")]
         if value.abs() >= FIRST_INEXACT_INTEGER {
@@ -143,48 +125,6 @@ impl Formatter for Canonical<'_> {
         } else {
             write!(writer, "{value}")
         }
-    }
-
-    fn begin_object<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
-        self.objects.push(Vec::new());
-        writer.write_all(b"{")
-    }
-
-    fn begin_object_key<W: ?Sized + Write>(&mut self, _: &mut W, _: bool) -> io::Result<()> {
-        let start = self.text.borrow().len();
-        if let Some(members) = self.objects.last_mut() {
-            members.push([start, start]);
-        }
-        Ok(())
-    }
-
-    fn end_object_key<W: ?Sized + Write>(&mut self, _: &mut W) -> io::Result<()> {
-        if let Some(member) = self.objects.last_mut().and_then(|members| members.last_mut()) {
-            member[1] = self.text.borrow().len();
-        }
-        Ok(())
-    }
-
-    fn end_object<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
-        let starts = self.objects.pop().unwrap_or_default();
-        if let Some([first, _]) = starts.first().copied() {
-            let mut text = self.text.borrow_mut();
-            let written = text.split_off(first);
-            let ends = starts[1..].iter().map(|member| member[0] - first).chain([written.len()]);
-            let mut members: Vec<(&[u8], &[u8])> = starts
-                .iter()
-                .zip(ends)
-                .map(|([start, key], end)| {
-                    (&written[start - first..key - first], &written[start - first..end])
-                })
-                .collect();
-            members.sort_unstable_by_key(|(key, _)| *key);
-            for (index, (_, member)) in members.into_iter().enumerate() {
-                text.extend_from_slice(if index > 0 { b"," } else { b"" });
-                text.extend_from_slice(member);
-            }
-        }
-        writer.write_all(b"}")
     }
 }
 

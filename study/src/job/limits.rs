@@ -54,7 +54,7 @@ impl Limit {
     pub fn reason(self) -> String {
         let next = |key: &str| {
             let status = self.status();
-            format!("next: billow run STUDY --again {status} --job-limit {key}=…")
+            format!("next: billow run STUDY --again {status} --set job_limits.{key}=…")
         };
         match self {
             Self::WallTime(limit) => {
@@ -92,10 +92,10 @@ mod tests {
         let reason = Limit::WallTime(10.0).reason();
         assert_eq!(
             reason,
-            "job_limits.wall_time of 10 s is reached; next: billow run STUDY --again timeout --job-limit \
-             wall_time=…"
+            "job_limits.wall_time of 10 s is reached; next: billow run STUDY --again timeout --set \
+             job_limits.wall_time=…"
         );
-        assert!(Limit::Steps(7).reason().contains("--again step_limit --job-limit steps=…"));
+        assert!(Limit::Steps(7).reason().contains("--again step_limit --set job_limits.steps=…"));
         let memory = Limit::Memory { limit: 1_000_000, needed: 1_000_001 }.reason();
         assert!(memory.starts_with("the job needs 2 MB, job_limits.memory is 1 MB"), "{memory}");
     }

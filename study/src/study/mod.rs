@@ -13,7 +13,6 @@ pub mod finished;
 mod grid;
 pub(crate) mod ground;
 mod inflow;
-pub mod job_limits;
 mod meshes;
 mod parameters;
 pub mod plan;
@@ -213,7 +212,13 @@ impl Study {
 
     /// The limits of its jobs.
     pub fn job_limits(&self) -> JobLimits {
-        job_limits::of(|key| self.settings.at(key).clone())
+        let steps = match self.settings.value("job_limits.steps") {
+            Value::Integer(steps) => u64::try_from(*steps).ok(),
+            _ => None,
+        };
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1e15")]
+        let memory = self.settings.number("job_limits.memory").map(|bytes| bytes as u64);
+        JobLimits { wall_time: self.settings.number("job_limits.wall_time"), steps, memory }
     }
 
     /// Its file as it ran: overrides applied, the defaults of keys written out, its name.

@@ -54,13 +54,12 @@ const VERTEX: &str = "v and three finite numbers, as in `v 0.1 2e-3 -4`";
 const FACE: &str = "three or more different vertices by number, 1 for the first or -1 for the last so \
                     far, as in `f 1 2 3` or `f 1/4 2/5 -1/6`";
 
-/// Reads a surface. Where the text contains no vertices, its faces refer to `given` external ones.
-pub fn read(text: &str, given: usize) -> Result<Surface, ObjError> {
+/// Reads a surface.
+pub fn read(text: &str) -> Result<Surface, ObjError> {
     let mut surface = Surface::default();
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let is_vertex = |line: &str| line.split_whitespace().next() == Some("v");
     let vertices = lines(text).filter(|(_, line)| is_vertex(line)).count();
-    let known = if vertices > 0 { vertices } else { given };
     let (mut groups, mut object) = (Vec::new(), Vec::new());
     for (line, content) in lines(text) {
         let mut words = content.split_whitespace();
@@ -72,8 +71,8 @@ pub fn read(text: &str, given: usize) -> Result<Surface, ObjError> {
                 surface.vertices.push(position);
             }
             "f" => {
-                let so_far = if vertices > 0 { surface.vertices.len() } else { given };
-                let corners = face(words, known, so_far).map_err(|problem| ObjError {
+                let so_far = surface.vertices.len();
+                let corners = face(words, vertices, so_far).map_err(|problem| ObjError {
                     line,
                     problem,
                     allowed: FACE,
@@ -139,10 +138,10 @@ fn shortened(word: &str) -> String {
     word.chars().take(20).collect()
 }
 
-/// Corners of a face. `known` is the number of vertices in all, `so_far` that above this line.
+/// Corners of a face. `vertices` is the number of vertices in all, `so_far` that above this line.
 fn face<'a>(
     words: impl Iterator<Item = &'a str>,
-    known: usize,
+    vertices: usize,
     so_far: usize,
 ) -> Result<Vec<u32>, String> {
     let mut corners = Vec::new();
@@ -152,12 +151,12 @@ fn face<'a>(
             number.ok_or_else(|| format!("{:?} is not a vertex number", shortened(word)))?;
         let index = match number {
             0 => return Err("vertex 0: the first vertex is 1".to_owned()),
-            1.. => usize::try_from(number - 1).ok().filter(|index| *index < known),
+            1.. => usize::try_from(number - 1).ok().filter(|index| *index < vertices),
             _ => usize::try_from(number.unsigned_abs()).ok().and_then(|n| so_far.checked_sub(n)),
         };
         let index = index.and_then(|index| u32::try_from(index).ok());
         let index =
-            index.ok_or_else(|| format!("vertex {number} does not exist: there are {known}"))?;
+            index.ok_or_else(|| format!("vertex {number} does not exist: there are {vertices}"))?;
         if corners.contains(&index) {
             return Err(format!("names vertex {number} twice"));
         }
@@ -181,7 +180,7 @@ mod tests {
                     0.2 0.3 0.4 # colour\r\nv +1 1. -.5\r\nvt 0 0\r\nvn 0 0 1\r\n\r\nusemtl \
                     skin\r\ns off\r\nf 1/1/1 2/2/1 3/3/1\r\ng lid top\r\nf -3//1 -1//1 4//1\r\nv 0 1 \
                     0\r\nf 1 2 3 4\r\nl 1 2\r\np 1\r\n";
-        let surface = read(text, 0).unwrap();
+        let surface = read(text).unwrap();
         assert_eq!(surface.vertices.len(), 4);
         assert_eq!(surface.vertices[1], Vector3::new(1.0, 0.0, 0.0));
         assert_eq!(surface.vertices[2], Vector3::new(1.0, 1.0, -0.5));
@@ -193,15 +192,6 @@ mod tests {
         let names = |face: usize| surface.names[surface.faces[face].names].clone();
         assert_eq!(names(0), ["Bag one"]);
         assert_eq!(names(2), ["lid", "top", "Bag one"]);
-    }
-
-    #[test]
-    fn faces_may_refer_to_external_vertices() {
-        assert_eq!(read("f 1 2 -1\n", 7).unwrap().faces[0].corners, [0, 1, 6]);
-        assert_eq!(
-            read("f 1 2 8\n", 7).unwrap_err().problem,
-            "vertex 8 does not exist: there are 7"
-        );
     }
 
     #[test]
@@ -218,7 +208,7 @@ mod tests {
             ("v 0 0 0\nf a b c\n", 2, "\"a\" is not a vertex number"),
             ("solid ascii\n", 1, "\"solid\" is not an OBJ keyword"),
         ] {
-            let error = read(text, 0).unwrap_err();
+            let error = read(text).unwrap_err();
             assert_eq!(error.line, line, "{text:?}");
             assert!(error.problem.contains(problem), "{text:?}: {error}");
         }
@@ -227,11 +217,11 @@ mod tests {
     proptest! {
         #[test]
         fn random_text_gives_a_valid_surface_or_an_error_with_its_line(text in "\\PC{0,200}") {
-            match read(&text, 3) {
+            match read(&text) {
                 Ok(surface) => {
                     let finite = |x: &Vector3<f64>| x.iter().all(|component| component.is_finite());
                     prop_assert!(surface.vertices.iter().all(finite));
-                    let count = if surface.vertices.is_empty() { 3 } else { surface.vertices.len() };
+                    let count = surface.vertices.len();
                     let mut corners = surface.faces.iter().flat_map(|face| &face.corners);
                     prop_assert!(corners.all(|corner| (*corner as usize) < count));
                 }
@@ -246,8 +236,8 @@ mod tests {
         fn text_similar_to_obj_gives_a_valid_surface_or_an_error(
             text in "((v|f|g|o|#|vn|\\\\)[ \t]?(-?[0-9]{0,20}[/.e]?){0,5}[ \\\\\r]?\n?){0,20}"
         ) {
-            if let Ok(surface) = read(&text, 3) {
-                let vertices = if surface.vertices.is_empty() { 3 } else { surface.vertices.len() };
+            if let Ok(surface) = read(&format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{text}")) {
+                let vertices = surface.vertices.len();
                 for face in &surface.faces {
                     prop_assert!(face.fan().count() + 2 == face.corners.len());
                     prop_assert!(face.corners.iter().all(|c| (*c as usize) < vertices));

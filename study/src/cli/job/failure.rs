@@ -78,7 +78,7 @@ fn meaning_and_next(job: &Inspected) -> (&'static str, String) {
             if has_history {
                 format!("{history}: see how the time advanced")
             } else {
-                format!("{again} --job-limit steps=…: the job resumes from its checkpoint")
+                format!("{again} --set job_limits.steps=…: the job resumes from its checkpoint")
             },
         ),
         Status::Failed(FailureKind::Interpenetrated) => {
@@ -91,14 +91,14 @@ fn meaning_and_next(job: &Inspected) -> (&'static str, String) {
         Status::Timeout => (
             "the attempt reached its limit of wall time (job_limits.wall_time)",
             format!(
-                "{again} --job-limit wall_time=…: the job resumes from its checkpoint, if it has one"
+                "{again} --set job_limits.wall_time=…: the job resumes from its checkpoint, if it has one"
             ),
         ),
         Status::OutOfMemory => (
             "the job needs more memory than it may use",
             format!(
-                "a coarser mesh (design.subdivisions), or {again} where there is more memory; with --job-limit \
-                 memory=… if the reason names job_limits.memory"
+                "a coarser mesh (design.subdivisions), or {again} where there is more memory; with --set \
+                 job_limits.memory=… if the reason names job_limits.memory"
             ),
         ),
         Status::Crashed => (

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Args, run_study};
 use crate::cli::print::{count, print_rows};
+use crate::input::keys::{self, KEYS};
 use crate::input::value::Value;
 use crate::job::point::Point;
 use crate::job::row::{Cells, ColumnId};
@@ -16,7 +17,7 @@ use crate::platform::files::Disk;
 use crate::run::selection::Selection;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
-use crate::study::{Study, plan};
+use crate::study::{JOB_LIMITS, Study, plan};
 
 /// What is shown of a job and of its run with other settings.
 const COMPARED: [ColumnId; 8] = [
@@ -37,13 +38,19 @@ const COMPARED: [ColumnId; 8] = [
 pub(super) fn run(args: &Args, root: &Path, out: &mut dyn Write) -> Result<()> {
     let stored = crate::cli::results::read(root)?;
     let jobs = chosen(&stored, &args.again)?;
-    if !args.set.set.is_empty() {
+    // Limits of jobs change no job.
+    let is_limit = |set: &String| {
+        let key = set.split_once('=').and_then(|(name, _)| keys::find(name.trim()));
+        key.is_some_and(|key| KEYS[key].path.starts_with(JOB_LIMITS))
+    };
+    if !args.set.set.iter().all(is_limit) {
         return run_changed(args, &stored, &jobs, out);
     }
+    let study = Study::load(&stored.results.study_path(), &args.set.set)?;
     if !args.options.progress.quiet {
         eprintln!("{} to run again", count(jobs.len(), "job"));
     }
-    run_study(&stored.study, root, Some(&jobs), Selection::All, &args.options, out)
+    run_study(&study, root, Some(&jobs), Selection::All, &args.options, out)
 }
 
 /// The jobs with these ids or statuses.

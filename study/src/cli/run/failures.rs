@@ -46,9 +46,9 @@ pub(super) fn result(
 
 /// Statuses of jobs that can go on or run again, with the option that changes what stopped them.
 const RERUN: [(Status, &str); 4] = [
-    (Status::Timeout, " --job-limit wall_time=…"),
-    (Status::Failed(FailureKind::StepLimit), " --job-limit steps=…"),
-    (Status::OutOfMemory, " --job-limit memory=…"),
+    (Status::Timeout, " --set job_limits.wall_time=…"),
+    (Status::Failed(FailureKind::StepLimit), " --set job_limits.steps=…"),
+    (Status::OutOfMemory, " --set job_limits.memory=…"),
     (Status::Crashed, ""),
 ];
 

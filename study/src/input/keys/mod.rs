@@ -20,7 +20,7 @@ pub use objects::{
     BODY_KEYS, MESH_KEYS, MOVE_KEYS, OUTPUT_KEYS, PLATE_KEYS, ROTATION_KEYS, SCENE_WINDOW_KEYS,
     SPIN_KEYS, START_KEYS, SUPPORT_KEYS,
 };
-pub(crate) use objects::{FLAT, GRAVITY, NEAR};
+pub(crate) use objects::{GRAVITY, NEAR};
 pub use quantity::Quantity;
 pub use row::{named, position};
 pub use study::{KEYS, SECTIONS};

@@ -115,9 +115,6 @@ pub static ROTATION_KEYS: &[Key] = &[
 #[rustfmt::skip]
 pub static START_KEYS: &[Key] = &[
     key("velocity", VELOCITY, Absent("at rest"), "[0, 0, \"1 m/s\"]", "Velocity of every node."),
-    key("velocities", KeyKind::Text, Absent("none"), "\"velocities.obj\"",
-        "OBJ file whose vertices are the velocities (m/s) of the vertices of mesh.positions; added to \
-         velocity and spin."),
 ];
 
 /// The keys of `spin`: a rigid rotation at the start, added to the velocity.
@@ -150,24 +147,19 @@ pub(crate) static GRAVITY: [Key; 2] = [
 /// A position in `outputs`: the nearest node or element is recorded.
 pub(crate) static NEAR: Key = key("near", POSITION, Required, "[0, 0, 0.5]", "A position.");
 
-/// Flat coordinates of a corner in `mesh.reference`.
-pub(crate) static FLAT: KeyKind = from(Dimension::Length, -1e4, 1e4);
-
 /// The keys of objects that hold more than one value, and their meanings.
 pub(crate) const OBJECT_MEANINGS: &[(&str, &str)] = &[
     (
         "mesh.reference",
         "Stress-free shape of the film: an OBJ file with the faces of positions in the same order \
-         (of the film, or all; it has vertices of its own, so pieces may be cut apart), or flat \
-         coordinates of the corners of each face, [[x, y], [x, y], [x, y]]. Default: the shape at \
-         the start.",
+         (of the film, or all; it has vertices of its own, so pieces may be cut apart). Default: \
+         the shape at the start.",
     ),
     (
         "mesh.closure",
-        "Faces that close the volume without being film: names of groups or objects of positions, \
-         or an OBJ file of faces over its vertices. A vertex of no film moves with the rim of its \
-         faces, which takes its load. Default: none; with gas, a fan over each free edge loop \
-         closes an open film.",
+        "Faces that close the volume without being film: names of groups or objects of positions. \
+         A vertex of no film moves with the rim of its faces, which takes its load. Default: none; \
+         with gas, a fan over each free edge loop closes an open film.",
     ),
     ("supports[].nodes", "Vertices by number, 0 for the first of the file."),
     ("supports[].body", "A rigid plane of this mass that moves along its normal as a free body."),

@@ -227,14 +227,8 @@ fn radians(degrees: f64) -> f64 {
     quotient + ((product - back) - back_error + error) / 180.0
 }
 
-/// a × b as a rounded product and its exact error (Dekker 1971, splitting after Veltkamp).
+/// a × b as a rounded product and its exact error.
 fn exact_product(a: f64, b: f64) -> (f64, f64) {
-    let halves = |x: f64| {
-        let scaled = 134_217_729.0 * x;
-        let high = scaled - (scaled - x);
-        (high, x - high)
-    };
     let product = a * b;
-    let ((a1, a2), (b1, b2)) = (halves(a), halves(b));
-    (product, a2 * b2 - (((product - a1 * b1) - a2 * b1) - a1 * b2))
+    (product, libm::fma(a, b, -product))
 }

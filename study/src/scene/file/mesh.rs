@@ -26,7 +26,7 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
         Object::new(json, "mesh", "a mesh", MESH_KEYS, &["reference", "closure"], &source)?;
     let file = object.needed_text("positions")?;
     let scale = object.needed("scale")?;
-    let mut surface = reader.surface("mesh.positions", &file, 0)?;
+    let mut surface = reader.surface("mesh.positions", &file)?;
     for vertex in &mut surface.vertices {
         *vertex *= scale;
     }
@@ -37,15 +37,13 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
     let tolerance = object.number("weld")?;
     let joined = weld::joined(&surface.vertices, tolerance);
     let closes = closing_groups(&object, &surface)?;
-    let outside = closing_file(&object, &surface, &file, reader)?;
     let film: Vec<bool> = surface.faces.iter().map(|face| !closes[face.names]).collect();
     if !film.contains(&true) {
         let problem = "names every face, so no face is film";
         return Err(object.error("closure", problem, "groups that leave some film").into());
     }
-    let closing = surface.faces.iter().zip(&film).filter(|(_, film)| !**film).map(|(face, _)| face);
-    let closing: Vec<&Face> =
-        closing.chain(outside.iter().flat_map(|other| &other.faces)).collect();
+    let closing = surface.faces.iter().zip(&film).filter(|(_, film)| !**film);
+    let closing: Vec<&Face> = closing.map(|(face, _)| face).collect();
     let node = weld::nodes(&surface, &joined, &film, &closing);
     let reference = reference(&object, &surface, &film, scale, reader)?;
     let mut shell = Shell { positions: positions(&surface, &node), ..Shell::default() };
@@ -99,35 +97,6 @@ fn positions(surface: &Surface, node: &[Option<u32>]) -> Vec<Vector3<f64>> {
     vertices.iter().map(|(_, vertex)| surface.vertices[*vertex as usize]).collect()
 }
 
-/// The surface of the file that closes the volume, where `closure` names one.
-fn closing_file(
-    object: &Object<'_>,
-    surface: &Surface,
-    file: &str,
-    reader: &mut Reader,
-) -> Result<Option<Surface>> {
-    let name = match object.given("closure") {
-        Some(Json::Text(name)) if is_file(name) => name,
-        _ => return Ok(None),
-    };
-    let other = reader.surface("mesh.closure", name, surface.vertices.len())?;
-    if !other.vertices.is_empty() && other.vertices.len() != surface.vertices.len() {
-        let problem = format!(
-            "has {} vertices, {file} has {}: its faces must use the same vertices",
-            other.vertices.len(),
-            surface.vertices.len()
-        );
-        let allowed = "the same vertices in the same order, or no vertices";
-        return Err(refuse(name, "mesh.closure", problem, allowed, &reader.source).into());
-    }
-    Ok(Some(other))
-}
-
-/// Whether a name is that of an OBJ file.
-fn is_file(name: &str) -> bool {
-    name.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("obj"))
-}
-
 /// An error about the content of a file that a key names.
 fn refuse(
     file: &str,
@@ -143,7 +112,6 @@ fn refuse(
 fn closing_groups(object: &Object<'_>, surface: &Surface) -> Result<Vec<bool>> {
     let names = match object.given("closure") {
         None => Vec::new(),
-        Some(Json::Text(name)) if is_file(name) => Vec::new(),
         Some(Json::Text(name)) => vec![name.as_str()],
         Some(Json::List(items)) => {
             let text = |item: &'_ Json| matches!(item, Json::Text(_));
@@ -160,7 +128,7 @@ fn closing_groups(object: &Object<'_>, surface: &Surface) -> Result<Vec<bool>> {
         }
         Some(_) => {
             return Err(object
-                .error("closure", "is not a name, a list of names or a file", CLOSURE)
+                .error("closure", "is not a name or a list of names", CLOSURE)
                 .into());
         }
     };
@@ -197,8 +165,7 @@ pub(super) fn check_closure(
 }
 
 /// What `closure` may be, for errors.
-const CLOSURE: &str =
-    "names of groups or objects of positions, or an OBJ file of faces over its vertices";
+const CLOSURE: &str = "names of groups or objects of positions";
 
 /// Refuses a triangle whose corners welding has joined.
 fn check_triangle(file: &str, face: &Face, [a, b, c]: [u32; 3], source: &Source) -> Result<()> {

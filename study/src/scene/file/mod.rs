@@ -154,7 +154,7 @@ impl SceneFile {
         if statics {
             seat(&mut shape, std::mem::take(&mut seating));
         }
-        let velocities = start::velocities(tree.get("start"), &shape, reader)?;
+        let velocities = start::velocities(tree.get("start"), &shape, &reader.source)?;
         let (outputs, recorded) =
             outputs::read(tree.get("outputs"), &shape, &mut notes, &reader.source)?;
         let end_time = end_time(&settings, &reader.source)?;

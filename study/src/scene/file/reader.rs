@@ -31,11 +31,10 @@ pub(crate) struct Reader {
 }
 
 impl Reader {
-    /// The surface of an OBJ file that a key names; `given` is the number of vertices that its faces may use
-    /// before its own.
-    pub fn surface(&mut self, key: &str, name: &str, given: usize) -> Result<Surface> {
+    /// The surface of an OBJ file that a key names.
+    pub fn surface(&mut self, key: &str, name: &str) -> Result<Surface> {
         let text = self.text(key, name)?;
-        let surface = obj_reader::read(&text, given).map_err(|error| {
+        let surface = obj_reader::read(&text).map_err(|error| {
             let problem = format!("line {}: {}", error.line, error.problem);
             self.source.error(key, format!("{name:?}"), problem, error.allowed)
         })?;

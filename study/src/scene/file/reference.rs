@@ -6,14 +6,13 @@ use nalgebra::{Vector2, Vector3};
 
 use super::reader::Reader;
 use crate::input::json::Json;
-use crate::input::keys::{FLAT, KeyKind};
 use crate::input::object::Object;
 use crate::platform::error::Result;
 
 /// Stress-free corners of each triangle of each face, m.
 pub(super) type Reference = Vec<Vec<[Vector3<f64>; 3]>>;
 
-/// Reads the stress-free shape: an OBJ file, flat coordinates, or the shape at the start.
+/// Reads the stress-free shape: an OBJ file, or the shape at the start.
 pub(super) fn reference(
     object: &Object<'_>,
     surface: &Surface,
@@ -31,24 +30,13 @@ pub(super) fn reference(
     let given: Vec<(Vec<Vector3<f64>>, String)> = match object.given("reference") {
         None => return Ok(surface.faces.iter().map(|face| fans(face, &start(face))).collect()),
         Some(Json::Text(name)) => {
-            let flat = reader.surface("mesh.reference", name, 0)?;
+            let flat = reader.surface("mesh.reference", name)?;
             let position = |v: &u32| flat.vertices[*v as usize] * scale;
             let corners = |face: &Face| face.corners.iter().map(position).collect();
             flat.faces.iter().map(|face| (corners(face), format!("line {}", face.line))).collect()
         }
-        Some(Json::List(items)) => {
-            let face = |(index, item): (usize, &Json)| {
-                let problem = |problem| object.error("reference", problem, REFERENCE);
-                let corners =
-                    inline(item).map_err(|why| problem(format!("face {index}: {why}")))?;
-                Ok((corners, format!("face {index}")))
-            };
-            items.iter().enumerate().map(face).collect::<Result<_>>()?
-        }
         Some(_) => {
-            return Err(object
-                .error("reference", "is neither a file nor a list", REFERENCE)
-                .into());
+            return Err(object.error("reference", "is not the name of a file", REFERENCE).into());
         }
     };
     let films = film.iter().filter(|film| **film).count();
@@ -82,26 +70,8 @@ pub(super) fn reference(
 }
 
 /// What `reference` may be, for errors.
-const REFERENCE: &str = "an OBJ file with the faces of positions in the same order (of the film, or \
-                         all), or a list of them as [[x, y], [x, y], [x, y]] in m";
-
-/// Flat coordinates of the corners of one face, m.
-fn inline(json: &Json) -> std::result::Result<Vec<Vector3<f64>>, String> {
-    let KeyKind::Quantity(length) = FLAT else { unreachable!("a length") };
-    let Json::List(corners) = json else { return Err(format!("is {}, not a list", json.kind())) };
-    let corner = |corner: &Json| match corner {
-        Json::List(parts) if matches!(parts.len(), 2 | 3) => {
-            let mut position = Vector3::zeros();
-            for (k, part) in parts.iter().enumerate() {
-                let value = length.read(part)?;
-                position[k] = length.number(&value).unwrap_or_default();
-            }
-            Ok(position)
-        }
-        other => Err(format!("a corner is {other}, not [x, y]")),
-    };
-    corners.iter().map(corner).collect()
-}
+const REFERENCE: &str =
+    "an OBJ file with the faces of positions in the same order (of the film, or all)";
 
 /// The stress-free triangle in its own plane.
 pub(super) fn flattened(
