@@ -172,7 +172,7 @@ fn a_limited_job_is_a_row_and_goes_on_with_a_higher_limit() {
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert_eq!(ids(&folder, "timeout"), failed);
     let again = ["run", "results/grid", "--again", "timeout"];
-    folder.stdout(&[&again[..], &["--set", "job_limits.wall_time=1 h", "-q"]].concat());
+    folder.stdout(&[&again[..], &["--set", "job_limits.steps=1e7", "-q"]].concat());
     assert_same_bits(&folder, &whole);
     // The limits are no change of the study.
     let said = stderr(&folder.run(&["run", "grid.json", "--set", "job_limits.steps=9"]));

@@ -70,7 +70,7 @@ const DAMAGES: [(&str, Change, bool, &str); 17] = [
     (STUDY, Cut, true, "damaged: it does not have the contents"),
     (
         STUDY,
-        Edit("\"end_time\": 0.6", "\"end_time\": 0.7"),
+        Edit("\"end_time\": \"0.6 s\"", "\"end_time\": \"0.7 s\""),
         true,
         "damaged: it does not have the contents",
     ),

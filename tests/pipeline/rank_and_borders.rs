@@ -95,7 +95,7 @@ fn the_answer_counts_points_and_names_the_gentler_strategy() {
 
 #[test]
 fn a_search_encloses_the_rate_at_which_a_limit_is_missed() {
-    let bisect = json!({"bisect": ["0.5 g/s", "20 g/s"], "on": "peak_vz", "tolerance": "0.2 g/s"});
+    let bisect = json!({"bisect": ["0.5 g/s", "20 g/s"], "on": "peak_vz", "tolerance": "1 %"});
     let mut study = safety_study(&bisect);
     study.as_object_mut().unwrap().remove("replicates");
     let folder = TestFolder::new(&study);

@@ -12,6 +12,7 @@ use super::print::{count, points_of_runs};
 use super::{Format, changes, memory, notes, output_error, results};
 use crate::analysis::answer::Answer;
 use crate::job::executor::Solver;
+use crate::job::limits::JobLimits;
 use crate::job::references::References;
 use crate::job::row::COLUMNS;
 use crate::job::{JobId, Status};
@@ -85,7 +86,15 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             eprintln!("note: {note}");
         }
     }
-    run_study(&study, &root, None, selection(args.points.as_deref())?, &args.options, out)
+    run_study(
+        &study,
+        study.job_limits(),
+        &root,
+        None,
+        selection(args.points.as_deref())?,
+        &args.options,
+        out,
+    )
 }
 
 /// The jobs that the run takes.
@@ -105,6 +114,7 @@ fn selection(points: Option<&str>) -> Result<Selection> {
 /// As [`run`], and jobs that gave different bits than before.
 pub(super) fn run_study(
     study: &Study,
+    limits: JobLimits,
     root: &Path,
     again: Option<&BTreeSet<JobId>>,
     selection: Selection,
@@ -119,7 +129,6 @@ pub(super) fn run_study(
     })?;
     let instruction_set = super::instruction_set::selected()?;
     let (threads, note) = memory::threads(options.threads.count()?);
-    let limits = study.job_limits();
     let memory = Memory::new(threads);
     memory.check()?;
     if !options.progress.quiet {

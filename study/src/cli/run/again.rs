@@ -46,11 +46,11 @@ pub(super) fn run(args: &Args, root: &Path, out: &mut dyn Write) -> Result<()> {
     if !args.set.set.iter().all(is_limit) {
         return run_changed(args, &stored, &jobs, out);
     }
-    let study = Study::load(&stored.results.study_path(), &args.set.set)?;
+    let limits = Study::load(&stored.results.study_path(), &args.set.set)?.job_limits();
     if !args.options.progress.quiet {
         eprintln!("{} to run again", count(jobs.len(), "job"));
     }
-    run_study(&study, root, Some(&jobs), Selection::All, &args.options, out)
+    run_study(&stored.study, limits, root, Some(&jobs), Selection::All, &args.options, out)
 }
 
 /// The jobs with these ids or statuses.
@@ -118,10 +118,16 @@ fn run_changed(
         })?;
         let root = beside(stored.results.root());
         let only = BTreeSet::from([found.job.id.clone()]);
-        run_study(&study, &root, Some(&only), Selection::All, &args.options, &mut std::io::sink())
-            .or_else(
-                |error| if matches!(error, Error::JobsFailed(_)) { Ok(()) } else { Err(error) },
-            )?;
+        run_study(
+            &study,
+            study.job_limits(),
+            &root,
+            Some(&only),
+            Selection::All,
+            &args.options,
+            &mut std::io::sink(),
+        )
+        .or_else(|error| if matches!(error, Error::JobsFailed(_)) { Ok(()) } else { Err(error) })?;
         let again = Stored::read(Results::new(&Disk, &root))?;
         changed.push((id, found.job.id.clone(), again.cells_of_job(&found.job.id)));
     }
