@@ -76,7 +76,7 @@ fn a_likely_forgotten_unit_is_a_warning() {
     for expected in [
         "warning: grid.json: grid.residual_gas_mass[0] = 0.05: is 0.05 kg, outside the plausible range, \
          0 to 0.02 kg: is a unit missing?\n  next: if 0.05 g is meant, write \"0.05 g\"",
-        "grid.mass_flow_rate[0] = 1 (and 1 more value of this list): is 1 kg/s",
+        "grid.mass_flow_rate[0] = 1 (and 1 more): is 1 kg/s",
         "grid.mass_flow_rate[2] = \"800 g/s\": is outside the plausible range, 0 to 500 g/s\n",
     ] {
         assert!(plan.contains(expected), "{plan}");
@@ -106,13 +106,13 @@ fn times_that_do_not_fit_the_run_are_warnings() {
     for command in ["plan", "run"] {
         let said = stderr(&folder.run(&[command, "grid.json"]));
         for expected in [
-            "gas.residual_gas_mass = 0.01 kg (and 3 more points): enters at gas.burst_rate (0.005 kg/s) \
+            "gas.residual_gas_mass = 0.01 kg (and 3 more): enters at gas.burst_rate (0.005 kg/s) \
              for 2 s, beyond solver.end_time (0.6 s): only 30 % enter",
             "strategies.late.inflow[0].from = 0.7 s: is after solver.end_time (0.6 s)",
             "strategies.long.inflow[0].to = 2 s: is after solver.end_time (0.6 s): the part after it, \
              70 % of its gas, is ignored",
             "strategies.hold.release_time = 0.59 s: leaves 0.01 s of a run of 0.6 s",
-            "outputs.sample_interval = 0.1 s (and 3 more points): gives 7 sample(s) in a run of 0.6 s",
+            "outputs.sample_interval = 0.1 s (and 3 more): gives 7 sample(s) in a run of 0.6 s",
         ] {
             assert!(said.contains(expected), "{expected}: {said}");
         }

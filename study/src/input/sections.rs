@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use billow_solver::scene::InflowWindow;
+
 use crate::input::json::Json;
 use crate::input::keys::{KEYS, STRATEGY_KEYS, STUDY, Table, WINDOW_KEYS, position};
 use crate::input::object::object;
@@ -195,25 +197,53 @@ fn unknown(
     source.error(path, value, problem, known.join(", "))
 }
 
-/// Warns of a window, between these times (s), that starts or ends after the run. `end` is the key that gives
-/// its end, with its value.
-pub(crate) fn warn_of_end(
+/// Refuses a window, between these times (s), that ends before it begins, and warns of one that starts or ends after
+/// the run. `end` is the key that gives its end, with its value; `None` where nothing does.
+pub(crate) fn check_window(
     path: &str,
     [from, to]: [f64; 2],
-    end: (&str, String),
+    end: Option<(&str, String)>,
     end_time: f64,
     source: &Source,
-) {
+) -> Result<(), InputError> {
+    let is_given = end.as_ref().is_some_and(|(key, _)| *key == "to");
+    if to <= from && (to < from || is_given) {
+        return Err(source.error(
+            &format!("{path}.to"),
+            shown(to),
+            "the window ends before it begins",
+            format!("above its `from`, {} s", shown(from)),
+        ));
+    }
     let part = if from >= end_time {
         "the window".to_owned()
     } else if to > end_time {
         let part = brief_number(100.0 * (to - end_time) / (to - from));
         format!("the part after it, {part} % of its gas,")
     } else {
-        return;
+        return Ok(());
     };
-    let (key, value) = if from >= end_time { ("from", format!("{} s", shown(from))) } else { end };
+    let end = end.filter(|_| from < end_time);
+    let (key, value) = end.unwrap_or_else(|| ("from", format!("{} s", shown(from))));
     let problem = format!("is after solver.end_time ({} s): {part} is ignored", shown(end_time));
     let next = "change it, or raise solver.end_time".to_owned();
     source.warn_point(&format!("{path}.{key}"), &value, Implausible { problem, next });
+    Ok(())
+}
+
+/// Inflow windows in order of time. Windows without inflow before the end (s) are left out, and windows that last
+/// beyond the end are cut there, so that equal physics gives an equal job.
+pub(crate) fn in_order(mut windows: Vec<InflowWindow>, end_time: f64) -> Vec<InflowWindow> {
+    for window in &mut windows {
+        window.to = window.to.min(end_time);
+    }
+    windows.retain(|window| window.mass_flow_rate > 0.0 && window.from < window.to);
+    windows.sort_by(|a, b| {
+        a.from
+            .total_cmp(&b.from)
+            .then(a.to.total_cmp(&b.to))
+            .then(a.mass_flow_rate.total_cmp(&b.mass_flow_rate))
+            .then(a.temperature.total_cmp(&b.temperature))
+    });
+    windows
 }

@@ -23,8 +23,6 @@ pub(crate) struct Source {
 struct Warning {
     /// What the warning is about, without the number of a value in a list.
     place: String,
-    /// What `more` counts: values of a list, or points.
-    noun: &'static str,
     text: InputError,
     /// Number of further ones with the same problem.
     more: usize,
@@ -41,22 +39,15 @@ impl Source {
         let place = place.map_or(key, |(place, _)| place);
         // A list may have numbers with and without a unit.
         let kind = if let Json::Text(_) = value { "with a unit" } else { "" };
-        self.keep(format!("{place} {kind}"), "value of this list", key, value, implausible);
+        self.keep(format!("{place} {kind}"), key, value, implausible);
     }
 
     /// Keeps a warning about a point of the study. Further points are counted.
     pub fn warn_point(&self, key: &str, value: impl Display, implausible: Implausible) {
-        self.keep(format!("point {key}"), "point", key, value, implausible);
+        self.keep(format!("point {key}"), key, value, implausible);
     }
 
-    fn keep(
-        &self,
-        place: String,
-        noun: &'static str,
-        key: &str,
-        value: impl Display,
-        implausible: Implausible,
-    ) {
+    fn keep(&self, place: String, key: &str, value: impl Display, implausible: Implausible) {
         let mut warnings = self.warnings.borrow_mut();
         if let Some(known) = warnings.iter_mut().find(|known| known.place == place) {
             known.more += 1;
@@ -64,7 +55,7 @@ impl Source {
         }
         let mut text = self.error(key, value, implausible.problem, "");
         text.hint = implausible.next;
-        warnings.push(Warning { place, noun, text, more: 0 });
+        warnings.push(Warning { place, text, more: 0 });
     }
 
     /// The warnings so far, one text each.
@@ -73,11 +64,7 @@ impl Source {
         let text = |warning: &Warning| {
             let mut error = warning.text.clone();
             if warning.more > 0 {
-                let noun = match warning.more {
-                    1 => warning.noun.to_owned(),
-                    _ => warning.noun.replacen("value", "values", 1).replacen("point", "points", 1),
-                };
-                let _ = write!(error.value, " (and {} more {noun})", warning.more);
+                let _ = write!(error.value, " (and {} more)", warning.more);
             }
             format!("warning: {error}")
         };

@@ -1,4 +1,4 @@
-//! Computes the jobs of a batch. The trait lets a test replace the solver.
+//! Computes a job. The trait lets a test replace the solver.
 
 use std::cell::RefCell;
 use std::panic::{self, AssertUnwindSafe};
@@ -20,13 +20,8 @@ use crate::job::{Job, JobId};
 
 /// Computes jobs.
 pub trait Executor: Sync {
-    /// Number of jobs that one call should get.
-    fn batch(&self) -> usize {
-        1
-    }
-
-    /// Runs a batch and returns one outcome per task, in the order of `tasks`.
-    fn execute(&self, tasks: &[Task<'_>]) -> Vec<Outcome>;
+    /// Runs a job and returns how it ended.
+    fn execute(&self, task: &Task<'_>) -> Outcome;
 }
 
 /// How a job ended.
@@ -64,13 +59,7 @@ pub struct Solver {
 }
 
 impl Executor for Solver {
-    fn execute(&self, tasks: &[Task<'_>]) -> Vec<Outcome> {
-        tasks.iter().map(|task| self.run(task)).collect()
-    }
-}
-
-impl Solver {
-    fn run(&self, task: &Task<'_>) -> Outcome {
+    fn execute(&self, task: &Task<'_>) -> Outcome {
         let mut attempt = Attempt::new(task);
         let mut deployment = match self.solve(task, &mut attempt) {
             Ok(deployment) => deployment,
@@ -88,7 +77,9 @@ impl Solver {
         }
         Outcome::Ran { deployment: Box::new(deployment), seconds, steps }
     }
+}
 
+impl Solver {
     /// Runs the model: from the checkpoint if there is a valid one, else from the start.
     fn solve(&self, task: &Task<'_>, attempt: &mut Attempt<'_>) -> Result<Deployment, SceneError> {
         let Job { id, scene, .. } = task.job;
@@ -128,23 +119,13 @@ fn unusable(id: &JobId, error: &CheckpointError) -> String {
     format!("checkpoint of job {}: {error}; the job starts from its beginning", id.short())
 }
 
-/// Runs a batch and turns panics into outcomes. When a batch of several jobs panics, its jobs are
-/// run again one by one, so that only the jobs that panic are lost.
-pub fn execute_guarded(executor: &dyn Executor, tasks: &[Task<'_>]) -> Vec<Outcome> {
-    match catch_panic(|| executor.execute(tasks)) {
-        Ok(outcomes) if outcomes.len() == tasks.len() => outcomes,
-        Ok(outcomes) => {
-            let message =
-                format!("executor returned {} outcomes for {} jobs", outcomes.len(), tasks.len());
-            vec![Outcome::Panicked(message); tasks.len()]
-        }
-        Err(message) if tasks.len() == 1 => vec![Outcome::Panicked(message)],
-        Err(_) => tasks.chunks(1).flat_map(|task| execute_guarded(executor, task)).collect(),
-    }
+/// Runs a job and turns a panic into its outcome.
+pub fn execute_guarded(executor: &dyn Executor, task: &Task<'_>) -> Outcome {
+    catch_panic(|| executor.execute(task)).unwrap_or_else(Outcome::Panicked)
 }
 
 thread_local! {
-    /// `Some` while this thread runs a batch: receives the panic message.
+    /// `Some` while this thread runs a job: receives the panic message.
     static MESSAGE: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 

@@ -160,14 +160,12 @@ pub struct Scripted<S> {
     pub script: S,
     /// Number of jobs executed so far.
     pub executed: AtomicUsize,
-    /// Number of jobs in a batch.
-    pub batch: usize,
 }
 
 impl<S: Fn(u32) -> Outcome + Sync> Scripted<S> {
-    /// An executor of batches of one job.
+    /// An executor.
     pub fn new(script: S) -> Self {
-        Self { script, executed: AtomicUsize::new(0), batch: 1 }
+        Self { script, executed: AtomicUsize::new(0) }
     }
 }
 
@@ -177,20 +175,13 @@ pub fn ran(number: u32) -> Outcome {
 }
 
 impl<S: Fn(u32) -> Outcome + Sync> Executor for Scripted<S> {
-    fn batch(&self) -> usize {
-        self.batch
-    }
-
-    fn execute(&self, tasks: &[Task<'_>]) -> Vec<Outcome> {
-        let run = |task: &Task<'_>| {
-            self.executed.fetch_add(1, Ordering::SeqCst);
-            let progress = Progress { time: 0.5, end_time: 1.0, z_centre: 0.3, pressure: 50.0 };
-            task.control.progress(progress);
-            if task.control.order() == Order::End {
-                return Outcome::Cancelled;
-            }
-            (self.script)(u32::try_from(task.job.scene.seed).unwrap())
-        };
-        tasks.iter().map(run).collect()
+    fn execute(&self, task: &Task<'_>) -> Outcome {
+        self.executed.fetch_add(1, Ordering::SeqCst);
+        let progress = Progress { time: 0.5, end_time: 1.0, z_centre: 0.3, pressure: 50.0 };
+        task.control.progress(progress);
+        if task.control.order() == Order::End {
+            return Outcome::Cancelled;
+        }
+        (self.script)(u32::try_from(task.job.scene.seed).unwrap())
     }
 }

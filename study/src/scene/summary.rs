@@ -1,28 +1,5 @@
 //! The summary that `billow solve` prints of a solved scene: one JSON object, SI.
-//!
-//! | key | meaning |
-//! |---|---|
-//! | `status` | `done`; `paused`; `no_equilibrium` or the name of a [`FailureKind`]: no result |
-//! | `notes` | choices of the program that a reader must know; left out where there are none |
-//! | `stop` | kind, time (s) and location of the failure, where there is no result |
-//! | `volume` | enclosed volume, m³; fans over the free edges close open film |
-//! | `pressure`, `overpressure` | inside, and inside less ambient, Pa; for a fixed pressure, both are the overpressure |
-//! | `temperature`, `gas_mass` | of the gas, K and kg; film temperature where there is no gas |
-//! | `extents` | x, y, z: smallest and largest coordinate of the film's nodes, m |
-//! | `nodes` | position of each recorded node, m |
-//! | `resultants` | principal membrane forces of each recorded element, the larger first, N/m: `N1`, `N2` second Piola-Kirchhoff, per reference width; `P1`, `P2` nominal (first Piola-Kirchhoff), magnitude per reference width; `T1`, `T2` true (Cauchy), per current width. `S1`, `S2`: N over thickness, Pa; `regime` taut, wrinkled, slack |
-//! | `reactions` | of each support: `force` (N) on the film and its `moment` about the origin (N m), without inertia; a node of two supports counts in both |
-//! | `ledger` | every entry since the start, J, and its largest `residual`; `gas_residual` |
-//! | `passages`, `intersections` | film through film: number over the run; largest number at a sample (static: at the end); null where contact is off |
-//! | `contact` | contact `distance` and `smallest_gap` (at most the distance), m; largest `interlayer_pressure`, Pa, and `contact_area_fraction`; `broad_phase_rebuilds`; largest number of `pairs`; `collision_impulses`; `unrecovered_contact_energy`, J; force on each of `plates` at the end, N |
-//! | `imperfection_amplitude` | of a stowed capsule at the start, m; null without one |
-//! | `measures` | largest `peak_vz` of the top ring (m/s) with its time, `peak_kinetic_energy` (J) |
-//! | `energies` | kinetic, strain and (static) potential, J |
-//! | `film_stress` | largest principal second Piola-Kirchhoff stress over the run or in static equilibrium, Pa |
-//! | `film_stress_99` | over the samples of a run, the largest stress that 99 % of the film's area does not exceed, Pa |
-//! | `steps`, `end_time`, `elements`, `wall_seconds` | number of steps (static: Newton steps); time reached, s; number of elements; wall time, s |
-//!
-//! [`FailureKind`]: billow_solver::output::outcome::FailureKind
+//! docs/guide/scene.md says what each key means.
 
 use billow_solver::collision::monitor::intersections::intersections;
 use billow_solver::geometry::field::Field;

@@ -5,7 +5,7 @@ use billow_solver::scene::InflowWindow;
 
 use crate::input::keys::{RESIDUAL_GAS, ResidualGas};
 use crate::input::plausible::Implausible;
-use crate::input::sections::warn_of_end;
+use crate::input::sections::{check_window, in_order};
 use crate::input::settings::{Settings, Strategy, Window};
 use crate::input::source::{Source, shown};
 use crate::input::value::brief_number;
@@ -23,26 +23,14 @@ pub(super) struct Inflow<'a> {
 }
 
 impl Inflow<'_> {
-    /// Inflow windows in order of time. Windows without inflow before the end are left out, and
-    /// windows that last beyond the end are cut there, so that equal physics gives an equal job.
+    /// Inflow windows in order of time, cut at the end of the run.
     pub fn windows(&self) -> Result<Vec<InflowWindow>, InputError> {
         let temperature = self.settings.needed("gas.inflow_temperature", self.source)?;
         let mut windows: Vec<InflowWindow> = self.burst(temperature)?.into_iter().collect();
         for (index, window) in self.settings.windows(self.strategy).enumerate() {
             windows.push(self.window(index, &window, temperature)?);
         }
-        for window in &mut windows {
-            window.to = window.to.min(self.end_time);
-        }
-        windows.retain(|window| window.mass_flow_rate > 0.0 && window.from < window.to);
-        windows.sort_by(|a, b| {
-            a.from
-                .total_cmp(&b.from)
-                .then(a.to.total_cmp(&b.to))
-                .then(a.mass_flow_rate.total_cmp(&b.mass_flow_rate))
-                .then(a.temperature.total_cmp(&b.temperature))
-        });
-        Ok(windows)
+        Ok(in_order(windows, self.end_time))
     }
 
     /// The burst of residual gas from release on.
@@ -101,19 +89,11 @@ impl Inflow<'_> {
             (None, Some(mass)) if rate > 0.0 => from + mass / rate,
             (None, _) => end_time.max(from),
         };
-        if to <= from && (to < from || window.to.is_some()) {
-            return Err(source.error(
-                &format!("{path}.to"),
-                shown(to),
-                "the window ends before it begins",
-                format!("above its `from`, {} s", shown(from)),
-            ));
-        }
         let end = match window.mass {
-            Some(mass) => ("mass", format!("{} kg, until {} s,", shown(mass), shown(to))),
-            None => ("to", format!("{} s", shown(to))),
+            Some(mass) => Some(("mass", format!("{} kg, until {} s,", shown(mass), shown(to)))),
+            None => window.to.map(|to| ("to", format!("{} s", shown(to)))),
         };
-        warn_of_end(&path, [from, to], end, end_time, source);
+        check_window(&path, [from, to], end, end_time, source)?;
         let temperature = window.temperature.unwrap_or(temperature);
         Ok(InflowWindow { from, to, mass_flow_rate: rate, temperature })
     }

@@ -38,16 +38,13 @@ impl<F: Fn(&Task<'_>) -> Outcome + Sync> Tasks<F> {
 }
 
 impl<F: Fn(&Task<'_>) -> Outcome + Sync> Executor for Tasks<F> {
-    fn execute(&self, tasks: &[Task<'_>]) -> Vec<Outcome> {
-        let run = |task: &Task<'_>| {
-            let running = self.running.fetch_add(1, Ordering::SeqCst) + 1;
-            self.order.lock().unwrap().push(number(task.job));
-            self.beside.lock().unwrap().push(running);
-            let outcome = (self.run)(task);
-            self.running.fetch_sub(1, Ordering::SeqCst);
-            outcome
-        };
-        tasks.iter().map(run).collect()
+    fn execute(&self, task: &Task<'_>) -> Outcome {
+        let running = self.running.fetch_add(1, Ordering::SeqCst) + 1;
+        self.order.lock().unwrap().push(number(task.job));
+        self.beside.lock().unwrap().push(running);
+        let outcome = (self.run)(task);
+        self.running.fetch_sub(1, Ordering::SeqCst);
+        outcome
     }
 }
 

@@ -1,6 +1,6 @@
 //! Runs a study: plans, skips finished jobs, runs the others, stores every job as it ends.
 //!
-//! The workers (one rayon pool, over jobs only) take batches of jobs in plan order and compute. The
+//! The workers (one rayon pool, over jobs only) take jobs in plan order and compute. The
 //! calling thread stores results (`state`): the history file of a job first and its journal record
 //! second, so a record always has its file. A job that was interrupted in between runs again and gives
 //! the same bits. A worker writes only the line of its attempt and the checkpoints of its job

@@ -99,14 +99,12 @@ fn executed<S>(executor: &Scripted<S>) -> usize {
 }
 
 #[test]
-fn the_bytes_do_not_depend_on_threads_and_batch_size() {
+fn the_bytes_do_not_depend_on_threads() {
     let folder = folder();
     let mut stored = Vec::new();
-    for (threads, batch) in [(1, 1), (2, 1), (3, 4), (1, 50)] {
-        let root = folder.path().join(format!("{threads}-{batch}"));
-        let mut executor = Scripted::new(ran);
-        executor.batch = batch;
-        let summary = run_quiet(&root, 20, threads, &executor);
+    for threads in [1, 2, 3] {
+        let root = folder.path().join(threads.to_string());
+        let summary = run_quiet(&root, 20, threads, &Scripted::new(ran));
         assert_eq!(summary.ran, 19);
         assert_eq!(
             summary.counts.status,
@@ -158,27 +156,23 @@ fn a_panic_and_a_refused_scene_are_rows_with_a_reason() {
         }),
         number => ran(number),
     };
-    for batch in [1, 3] {
-        let folder = folder();
-        let mut executor = Scripted::new(script);
-        executor.batch = batch;
-        let summary = run_quiet(folder.path(), 6, 2, &executor);
-        assert_eq!(summary.counts.failed(), 2, "batch {batch}");
-        let table = table(folder.path());
-        let cell = |name: &str, row: usize| table.column(name).unwrap().cells[row].to_string();
-        let status: Vec<String> = (0..6).map(|row| cell("status", row)).collect();
-        assert_eq!(status, ["done", "panicked", "infeasible", "invalid", "done", "done"]);
-        assert!(cell("reason", 1).starts_with("bad luck with 1 ("), "{}", cell("reason", 1));
-        assert_eq!(cell("reason", 3), "film.thickness: too thick");
+    let folder = folder();
+    let summary = run_quiet(folder.path(), 6, 2, &Scripted::new(script));
+    assert_eq!(summary.counts.failed(), 2);
+    let table = table(folder.path());
+    let cell = |name: &str, row: usize| table.column(name).unwrap().cells[row].to_string();
+    let status: Vec<String> = (0..6).map(|row| cell("status", row)).collect();
+    assert_eq!(status, ["done", "panicked", "infeasible", "invalid", "done", "done"]);
+    assert!(cell("reason", 1).starts_with("bad luck with 1 ("), "{}", cell("reason", 1));
+    assert_eq!(cell("reason", 3), "film.thickness: too thick");
 
-        let again = Scripted::new(script);
-        let summary = run_quiet(folder.path(), 6, 2, &again);
-        assert_eq!(
-            (executed(&again), summary.counts.failed()),
-            (0, 2),
-            "a failed job is not run again"
-        );
-    }
+    let again = Scripted::new(script);
+    let summary = run_quiet(folder.path(), 6, 2, &again);
+    assert_eq!(
+        (executed(&again), summary.counts.failed()),
+        (0, 2),
+        "a failed job is not run again"
+    );
 }
 
 #[test]

@@ -61,8 +61,8 @@ pub struct Ended {
     pub cells: Cells,
     /// The result of a job that ran.
     pub deployment: Option<Box<Deployment>>,
-    /// The memory of its batch, held until the result is stored.
-    pub reservation: Arc<Reservation>,
+    /// Its memory, held until the result is stored.
+    pub reservation: Reservation,
 }
 
 /// The event of a message; `None` for an ended job, whose event follows when it is stored.
@@ -106,93 +106,59 @@ pub struct WorkerPool<'a, 'w> {
 }
 
 impl WorkerPool<'_, '_> {
-    /// Runs all jobs on the pool, batch by batch in their order, until all are done or the run ends. The
-    /// dropped sender signals to the receiver that no message follows.
+    /// Runs all jobs on the pool, in their order, until all are done or the run ends. The dropped sender
+    /// signals to the receiver that no message follows.
     pub fn work(&self, sender: SyncSender<Message>) {
         let next = AtomicUsize::new(0);
-        let batch = self.executor.batch().max(1);
         self.pool.broadcast(|context| {
             let thread = context.index();
             while !(self.ending)() {
-                let first = next.fetch_add(batch, Ordering::Relaxed);
-                let Some(rest) = self.jobs.get(first..).filter(|rest| !rest.is_empty()) else {
-                    break;
-                };
-                let jobs = &rest[..batch.min(rest.len())];
-                let Some((refused, reservation)) = self.admit(jobs) else { break };
-                let reservation = Arc::new(reservation);
+                let index = next.fetch_add(1, Ordering::Relaxed);
+                let Some(job) = self.jobs.get(index) else { break };
+                let Some((refused, reservation)) = self.admit(job) else { break };
                 // Sending fails when the receiver stopped after an error.
-                if sender.send(Message::Started { index: first, thread }).is_err() {
+                if sender.send(Message::Started { index, thread }).is_err() {
                     break;
                 }
-                match self.run(jobs, refused, thread, &sender) {
-                    Ok(outcomes) => {
-                        for (offset, outcome) in outcomes.into_iter().enumerate() {
-                            let Some((cells, deployment)) = finish(&jobs[offset], outcome) else {
-                                continue;
-                            };
-                            let (index, reservation) = (first + offset, Arc::clone(&reservation));
-                            let ended = Ended { index, thread, cells, deployment, reservation };
-                            if sender.send(Message::Ended(Box::new(ended))).is_err() {
-                                return;
-                            }
-                        }
+                let outcome = refused.map_or_else(|| self.run(job, thread, &sender), Ok);
+                let (message, is_error) = match outcome.map(|outcome| finish(job, outcome)) {
+                    Ok(None) => continue,
+                    Ok(Some((cells, deployment))) => {
+                        let ended = Ended { index, thread, cells, deployment, reservation };
+                        (Message::Ended(Box::new(ended)), false)
                     }
-                    Err(error) => {
-                        let _ = sender.send(Message::Failed(error));
-                        return;
-                    }
+                    Err(error) => (Message::Failed(error), true),
+                };
+                if sender.send(message).is_err() || is_error {
+                    return;
                 }
             }
         });
         drop(sender);
     }
 
-    /// Runs the jobs of a batch that are not refused, after their attempts are recorded.
-    fn run(
-        &self,
-        jobs: &[Job],
-        refused: Vec<Option<Outcome>>,
-        thread: usize,
-        sender: &SyncSender<Message>,
-    ) -> Result<Vec<Outcome>> {
-        let control =
-            |job| JobControl { workers: self, job, thread, sender, clock: Clock::start() };
-        let controls: Vec<_> = jobs.iter().map(control).collect();
-        let mut tasks = Vec::with_capacity(jobs.len());
-        for (control, refused) in controls.iter().zip(&refused) {
-            let job = control.job;
-            if refused.is_none() {
-                self.log.start(&job.id)?;
-                let checkpoint = self.log.checkpoint(&job.id).unwrap_or_else(|error| {
-                    control.note(format!("{error}; the job starts from its beginning"));
-                    None
-                });
-                tasks.push(Task { job, limits: self.limits, checkpoint, control });
-            }
-        }
-        let mut outcomes = execute_guarded(self.executor, &tasks).into_iter();
-        let outcome = |refused: Option<Outcome>| refused.or_else(|| outcomes.next());
-        Ok(refused.into_iter().filter_map(outcome).collect())
+    /// Runs a job, after its attempt is recorded.
+    fn run(&self, job: &Job, thread: usize, sender: &SyncSender<Message>) -> Result<Outcome> {
+        let control = &JobControl { workers: self, job, thread, sender, clock: Clock::start() };
+        self.log.start(&job.id)?;
+        let checkpoint = self.log.checkpoint(&job.id).unwrap_or_else(|error| {
+            control.note(format!("{error}; the job starts from its beginning"));
+            None
+        });
+        let task = Task { job, limits: self.limits, checkpoint, control };
+        Ok(execute_guarded(self.executor, &task))
     }
 
-    /// Reserves the memory of a batch, and says how those of its jobs ended that do not run. `None` when the run
-    /// ends.
-    fn admit(&self, jobs: &[Job]) -> Option<(Vec<Option<Outcome>>, Reservation)> {
-        let mut reserved = 0_u64;
-        let refused = jobs.iter().map(|job| {
-            let needed = estimate(&job.scene).total;
-            let given = self.limits.memory.filter(|limit| needed > *limit);
-            let given = given.map(|limit| Limit::Memory { limit, needed });
-            let available = || self.memory.refuses(needed);
-            let limit = given.or_else(|| Some(Limit::Available { limit: available()?, needed }));
-            if limit.is_none() {
-                reserved = reserved.saturating_add(needed);
-            }
-            limit.map(Outcome::Limited)
-        });
-        let refused = refused.collect();
-        Some((refused, self.memory.reserve(reserved, self.ending)?))
+    /// Reserves the memory of a job, and says how it ended if it does not run. `None` when the run ends.
+    fn admit(&self, job: &Job) -> Option<(Option<Outcome>, Reservation)> {
+        let needed = estimate(&job.scene).total;
+        let given = self.limits.memory.filter(|limit| needed > *limit);
+        let given = given.map(|limit| Limit::Memory { limit, needed });
+        let available = || self.memory.refuses(needed);
+        let limit = given.or_else(|| Some(Limit::Available { limit: available()?, needed }));
+        let reserved = if limit.is_none() { needed } else { 0 };
+        let reservation = self.memory.reserve(reserved, self.ending)?;
+        Some((limit.map(Outcome::Limited), reservation))
     }
 }
 

@@ -15,7 +15,7 @@ use crate::input::json::Json;
 use crate::input::keys::SCENE_WINDOW_KEYS;
 use crate::input::object::Object;
 use crate::input::object::list;
-use crate::input::sections::warn_of_end;
+use crate::input::sections::{check_window, in_order};
 use crate::input::settings::Settings;
 use crate::input::source::{Source, shown};
 use crate::platform::error::InputError;
@@ -143,27 +143,13 @@ fn windows(
         let from = window.needed("from")?;
         let to = window.number("to")?;
         let to = to.unwrap_or(end_time.max(from));
-        if to < from || (to <= from && window.given("to").is_some()) {
-            let problem = "the window ends before it begins";
-            return Err(window.error(
-                "to",
-                problem,
-                format!("above its `from`, {} s", shown(from)),
-            ));
-        }
-        warn_of_end(&path, [from, to], ("to", format!("{} s", shown(to))), end_time, source);
-        let rate = window.needed("mass_flow_rate")?;
+        let end = window.given("to").map(|_| ("to", format!("{} s", shown(to))));
+        check_window(&path, [from, to], end, end_time, source)?;
+        let mass_flow_rate = window.needed("mass_flow_rate")?;
         let temperature = window.needed("temperature")?;
-        windows.push(InflowWindow {
-            from,
-            to: to.min(end_time),
-            mass_flow_rate: rate,
-            temperature,
-        });
+        windows.push(InflowWindow { from, to, mass_flow_rate, temperature });
     }
-    windows.retain(|window| window.mass_flow_rate > 0.0 && window.from < window.to);
-    windows.sort_by(|a, b| a.from.total_cmp(&b.from).then(a.to.total_cmp(&b.to)));
-    Ok(windows)
+    Ok(in_order(windows, end_time))
 }
 
 /// Largest enclosed volume that counts as zero, as a fraction of A^(3/2) of the film's area A (chosen:
