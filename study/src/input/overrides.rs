@@ -193,7 +193,7 @@ fn set_axis(tree: &mut Json, section: &str, axis: &str, given: Json) -> String {
 
 /// The member of an object that one part of a path names; a new empty object where there is none.
 /// `None` beyond the end of a list, or for a part that names nothing.
-fn member<'a>(object: &'a mut Json, part: &str) -> Option<&'a mut Json> {
+pub(crate) fn member<'a>(object: &'a mut Json, part: &str) -> Option<&'a mut Json> {
     let (name, index) = match part.split_once('[') {
         Some((name, index)) => (name, Some(index.strip_suffix(']')?.parse::<usize>().ok()?)),
         None => (part, None),
@@ -204,12 +204,11 @@ fn member<'a>(object: &'a mut Json, part: &str) -> Option<&'a mut Json> {
     if !matches!(object, Json::Object(_)) {
         *object = Json::Object(Vec::new());
     }
-    let Json::Object(members) = object else { return None };
-    let position = members.iter().position(|(key, _)| key == name).unwrap_or_else(|| {
-        members.push((name.to_owned(), Json::Object(Vec::new())));
-        members.len() - 1
-    });
-    match (index, &mut members[position].1) {
+    let value = object.entry(name)?;
+    if *value == Json::Null {
+        *value = Json::Object(Vec::new());
+    }
+    match (index, value) {
         (None, value) => Some(value),
         (Some(index), Json::List(items)) => items.get_mut(index),
         (Some(_), _) => None,

@@ -81,7 +81,7 @@ fn schema(file: FileKind, title: &str, description: &str) -> Json {
         if !path.starts_with("grid.") {
             let schema = place(&mut root, path);
             extend(schema, json!({"description": meaning}));
-            extend(schema, form(file, path));
+            extend(schema, form(path));
         }
     }
     // A gas is a name, or an object of its constants.
@@ -119,7 +119,7 @@ fn extend(schema: &mut Json, more: Json) {
 
 /// What a key with more than one value may hold, beside the keys of its object. A keyword of one type, as
 /// `minimum`, concerns no value of another type.
-fn form(file: FileKind, path: &str) -> Json {
+fn form(path: &str) -> Json {
     match path {
         "solver.meshes" => json!({
             "type": "array", "items": {"type": "integer", "minimum": 1}, "minItems": 2,
@@ -127,10 +127,6 @@ fn form(file: FileKind, path: &str) -> Json {
         }),
         "solver.stepping" => json!({"maxProperties": 1}),
         "strategies" => json!({"type": "object", "additionalProperties": false}),
-        "strategies.<name>.inflow" => json!({"default": [{}]}),
-        "supports" if file == FileKind::Study => {
-            json!({"default": [{"on": "bottom_ring", "fix": "xyz"}]})
-        }
         "units" => json!({"type": "object", "additionalProperties": {"type": "string"}}),
         "limits" => json!({
             "type": "object",
@@ -227,9 +223,6 @@ fn property(key: &Key) -> Json {
         let units = quantity.dimension.units();
         let _ =
             write!(description, " A number in {}, or with a unit: {}.", units[0], units.join(", "));
-        if let Some(plausible) = quantity.plausible_range() {
-            let _ = write!(description, " Plausible: {plausible}.");
-        }
     }
     let mut schema = json!({"description": description});
     let default = key.default_value();

@@ -7,6 +7,7 @@ use billow_solver::scene::InflowWindow;
 use crate::input::json::Json;
 use crate::input::keys::{KEYS, STRATEGY_KEYS, STUDY, Table, WINDOW_KEYS, position};
 use crate::input::object::object;
+use crate::input::overrides::member;
 use crate::input::plausible::Implausible;
 use crate::input::settings::{Settings, Strategy};
 use crate::input::source::{Source, shown};
@@ -33,7 +34,9 @@ impl Settings {
             }
         }
         if !settings.strategies.contains_key("direct") {
-            settings.add_strategy("direct", strategy::direct());
+            // Released at once, inflow from release to the end.
+            let direct = strategy::read("direct", &Json::Object(Vec::new()), source)?;
+            settings.add_strategy("direct", direct);
         }
         settings.check_strategy(settings.strategy_name(), "strategy", source)?;
         Ok(settings)
@@ -100,16 +103,10 @@ impl Settings {
     pub fn write_defaults(&self, tree: &mut Json) {
         let values = self.table.keys.iter().zip(&self.values);
         for (key, value) in values.filter(|(_, value)| **value != Value::Null) {
-            let object = Some(&mut *tree);
-            let parts = key.path.split('.');
-            let member = parts.fold(object, |object, part| {
-                let member = object?.entry(part)?;
-                if *member == Json::Null && part != key.leaf() {
-                    *member = Json::Object(Vec::new());
-                }
-                Some(member)
-            });
-            if let Some(member) = member.filter(|member| **member == Json::Null) {
+            let parts = || key.path.split('.');
+            if parts().try_fold(&*tree, Json::get).is_none()
+                && let Some(member) = parts().try_fold(&mut *tree, member)
+            {
                 *member = Json::from(value);
             }
         }

@@ -23,22 +23,7 @@ pub(crate) struct Strategy {
     /// Position of the first value of [`STRATEGY_KEYS`]; the windows follow.
     pub(super) start: usize,
     /// Number of its inflow windows.
-    pub(super) windows: usize,
-}
-
-/// What an inflow window gives; the study or the strategy decides the rest.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Window {
-    /// Start, s.
-    pub from: Option<f64>,
-    /// End, s.
-    pub to: Option<f64>,
-    /// Mass let in, kg; it gives the end.
-    pub mass: Option<f64>,
-    /// Mass flow rate, kg/s.
-    pub mass_flow_rate: Option<f64>,
-    /// Temperature of the gas let in, K.
-    pub temperature: Option<f64>,
+    pub windows: usize,
 }
 
 /// The value of every key of a table, in its order; `Null` where absent. In a study, the values of its
@@ -53,14 +38,6 @@ pub(crate) struct Settings {
     pub strategies: BTreeMap<String, Strategy>,
     /// What holds the capsule of a study.
     pub supports: Vec<Support>,
-}
-
-impl PartialEq for Settings {
-    fn eq(&self, other: &Self) -> bool {
-        std::ptr::eq(self.table, other.table)
-            && (&self.values, &self.strategies, &self.supports)
-                == (&other.values, &other.strategies, &other.supports)
-    }
 }
 
 impl Settings {
@@ -106,17 +83,10 @@ impl Settings {
         self.values[index].number().unwrap_or(0.0)
     }
 
-    /// The inflow windows of a strategy.
-    pub fn windows(&self, strategy: Strategy) -> impl Iterator<Item = Window> {
+    /// A value of an inflow window of a strategy; `None` where the study or the strategy decides.
+    pub fn of_window(&self, strategy: Strategy, window: usize, key: usize) -> Option<f64> {
         let start = strategy.start + STRATEGY_KEYS.len();
-        let values = &self.values[start..start + strategy.windows * WINDOW_KEYS.len()];
-        values.chunks(WINDOW_KEYS.len()).map(|values| Window {
-            from: values[const { position(WINDOW_KEYS, "from") }].number(),
-            to: values[const { position(WINDOW_KEYS, "to") }].number(),
-            mass: values[const { position(WINDOW_KEYS, "mass") }].number(),
-            mass_flow_rate: values[const { position(WINDOW_KEYS, "mass_flow_rate") }].number(),
-            temperature: values[const { position(WINDOW_KEYS, "temperature") }].number(),
-        })
+        self.values[start + window * WINDOW_KEYS.len() + key].number()
     }
 
     /// Position of the value that a dotted path names, or a last part that only one key has.

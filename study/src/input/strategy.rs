@@ -16,17 +16,6 @@ fn rows(path: &str, keys: &'static [Key], values: Vec<Value>) -> impl Iterator<I
     keys.iter().zip(values).map(move |(key, value)| (format!("{path}.{}", key.path), key, value))
 }
 
-fn defaults(keys: &[Key]) -> Vec<Value> {
-    keys.iter().map(Key::default_value).collect()
-}
-
-/// The strategy that every study has: released at once, inflow from release to the end.
-pub(crate) fn direct() -> Vec<Row> {
-    let strategy = rows("strategies.direct", STRATEGY_KEYS, defaults(STRATEGY_KEYS));
-    let window = rows("strategies.direct.inflow[0]", WINDOW_KEYS, defaults(WINDOW_KEYS));
-    strategy.chain(window).collect()
-}
-
 /// Longest name of a strategy, letters (chosen: it is part of column names).
 const MAX_NAME_LENGTH: usize = 64;
 
@@ -48,10 +37,9 @@ pub(crate) fn read(name: &str, json: &Json, source: &Source) -> Result<Vec<Row>,
     let object = Object::new(json, &path, "a strategy", STRATEGY_KEYS, &["inflow"], source)?;
     let mut strategy: Vec<Row> = rows(&path, STRATEGY_KEYS, object.values()?).collect();
     let path = format!("{path}.inflow");
-    let Some(windows) = object.given("inflow") else {
-        strategy.extend(rows(&format!("{path}[0]"), WINDOW_KEYS, defaults(WINDOW_KEYS)));
-        return Ok(strategy);
-    };
+    // Without windows there is one, from release to the end.
+    let one = Json::List(vec![Json::Object(Vec::new())]);
+    let windows = object.given("inflow").unwrap_or(&one);
     let allowed = "a list of {\"from\": \"5 s\", \"to\": \"12 s\", \"mass_flow_rate\": \"1 g/s\"}";
     for (index, json) in list(windows, &path, source, allowed)?.iter().enumerate() {
         let path = format!("{path}[{index}]");

@@ -3,13 +3,20 @@
 
 use billow_solver::scene::InflowWindow;
 
-use crate::input::keys::{RESIDUAL_GAS, ResidualGas};
+use crate::input::keys::{RESIDUAL_GAS, ResidualGas, WINDOW_KEYS, position};
 use crate::input::plausible::Implausible;
 use crate::input::sections::{check_window, in_order};
-use crate::input::settings::{Settings, Strategy, Window};
+use crate::input::settings::{Settings, Strategy};
 use crate::input::source::{Source, shown};
 use crate::input::value::brief_number;
 use crate::platform::error::InputError;
+
+/// Positions of the values of a window.
+const FROM: usize = position(WINDOW_KEYS, "from");
+const TO: usize = position(WINDOW_KEYS, "to");
+const MASS: usize = position(WINDOW_KEYS, "mass");
+const RATE: usize = position(WINDOW_KEYS, "mass_flow_rate");
+const TEMPERATURE: usize = position(WINDOW_KEYS, "temperature");
 
 /// What the inflow of a point follows from.
 pub(super) struct Inflow<'a> {
@@ -27,8 +34,8 @@ impl Inflow<'_> {
     pub fn windows(&self) -> Result<Vec<InflowWindow>, InputError> {
         let temperature = self.settings.needed("gas.inflow_temperature", self.source)?;
         let mut windows: Vec<InflowWindow> = self.burst(temperature)?.into_iter().collect();
-        for (index, window) in self.settings.windows(self.strategy).enumerate() {
-            windows.push(self.window(index, &window, temperature)?);
+        for index in 0..self.strategy.windows {
+            windows.push(self.window(index, temperature)?);
         }
         Ok(in_order(windows, self.end_time))
     }
@@ -63,20 +70,17 @@ impl Inflow<'_> {
     }
 
     /// One window of the strategy, with the study's values where it gives none.
-    fn window(
-        &self,
-        index: usize,
-        window: &Window,
-        temperature: f64,
-    ) -> Result<InflowWindow, InputError> {
+    fn window(&self, index: usize, temperature: f64) -> Result<InflowWindow, InputError> {
         let Self { source, end_time, .. } = *self;
         let path = format!("strategies.{}.inflow[{index}]", self.name);
-        let from = window.from.unwrap_or(self.settings.release_time(self.strategy));
-        let rate = match window.mass_flow_rate {
+        let value = |key| self.settings.of_window(self.strategy, index, key);
+        let [given_to, mass] = [TO, MASS].map(value);
+        let from = value(FROM).unwrap_or(self.settings.release_time(self.strategy));
+        let rate = match value(RATE) {
             Some(rate) => rate,
             None => self.settings.needed("gas.mass_flow_rate", source)?,
         };
-        let to = match (window.to, window.mass) {
+        let to = match (given_to, mass) {
             (Some(_), Some(mass)) => {
                 return Err(source.error(
                     &format!("{path}.mass"),
@@ -89,12 +93,12 @@ impl Inflow<'_> {
             (None, Some(mass)) if rate > 0.0 => from + mass / rate,
             (None, _) => end_time.max(from),
         };
-        let end = match window.mass {
+        let end = match mass {
             Some(mass) => Some(("mass", format!("{} kg, until {} s,", shown(mass), shown(to)))),
-            None => window.to.map(|to| ("to", format!("{} s", shown(to)))),
+            None => given_to.map(|to| ("to", format!("{} s", shown(to)))),
         };
         check_window(&path, [from, to], end, end_time, source)?;
-        let temperature = window.temperature.unwrap_or(temperature);
+        let temperature = value(TEMPERATURE).unwrap_or(temperature);
         Ok(InflowWindow { from, to, mass_flow_rate: rate, temperature })
     }
 }

@@ -61,7 +61,7 @@ pub(crate) const REPLICATES: &str = "replicates";
 pub(crate) const JOB_LIMITS: &str = "job_limits";
 
 /// A validated study.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Study {
     /// Name of the study and of its results folder.
     pub name: String,
@@ -153,7 +153,8 @@ impl Study {
         let (points, filtered) = expand::points(&settings, &grid, &source, max_points)?;
         meshes::refuse_other_models(&grid, &points, &source)?;
         let name = study_name(&settings, stem, &source)?;
-        let (question, warnings) = (question(&settings), source.warnings());
+        let question = settings.text("question").unwrap_or_default().to_owned();
+        let warnings = source.warnings();
         settings.write_defaults(&mut tree);
         tree.set("name", Json::Text(name.clone()));
         Ok(Self {
@@ -269,12 +270,6 @@ impl Study {
     pub fn filtered(&self) -> usize {
         self.filtered
     }
-}
-
-/// The question of a study.
-fn question(settings: &Settings) -> String {
-    let question = settings.text("question");
-    question.unwrap_or_default().to_owned()
 }
 
 /// The study's name: the given one, or that of its file; always one that a folder can have.
