@@ -6,7 +6,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use crate::sources::{code, files, text};
+use syn::punctuated::Punctuated;
+use syn::visit::{self, Visit};
+use syn::{Attribute, Expr, Ident, ItemMod, ItemUse, Macro, Token, UseTree};
+
+use crate::sources::{files, text};
 
 /// Rooms of every crate, from the ground up.
 const ROOMS: [(&str, &[&str]); 3] = [
@@ -54,75 +58,54 @@ fn is_test(path: &Path) -> bool {
     name == "tests" || name.ends_with("_tests") || name == "fixture"
 }
 
-/// The code of a file without its tests.
-fn without_tests(source: &str) -> String {
-    let code = code(source);
-    let start = code.find("#[cfg(test)]").filter(|at| {
-        let rest = code[*at..].split_once(']').map_or("", |(_, rest)| rest);
-        let rest = rest.trim_start();
-        rest.starts_with("mod tests")
-            || rest.starts_with("pub(super) mod tests")
-            || rest.starts_with("#[")
-    });
-    start.map_or(code.clone(), |at| code[..at].to_owned())
-}
+/// Collects the paths of a file, without its tests.
+#[derive(Default)]
+struct Paths(Vec<Vec<String>>);
 
-/// Every path a file names that begins with `crate`, `super` or `self`, groups written out.
-fn named_paths(code: &str) -> Vec<Vec<String>> {
-    let mut found = Vec::new();
-    let mut rest = code;
-    while let Some(start) =
-        ["crate::", "super::", "self::"].iter().filter_map(|word| rest.find(word)).min()
-    {
-        let before = rest[..start].chars().next_back();
-        rest = &rest[start..];
-        if before.is_some_and(|symbol| symbol.is_alphanumeric() || symbol == '_' || symbol == ':') {
-            rest = &rest[5..];
-            continue;
-        }
-        let used = expand(rest, &[], &mut found);
-        rest = &rest[used.max(5)..];
-    }
-    found
-}
-
-/// Adds the paths of one use tree; the bytes it takes.
-fn expand(text: &str, prefix: &[String], found: &mut Vec<Vec<String>>) -> usize {
-    let mut path = prefix.to_vec();
-    let mut index = 0;
-    loop {
-        let rest = &text[index..];
-        let word = rest.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len());
-        if word > 0 {
-            path.push(rest[..word].to_owned());
-            index += word;
-        } else if rest.starts_with('{') {
-            index += 1;
-            loop {
-                let gap =
-                    text[index..].len() - text[index..].trim_start_matches([' ', '\n', ',']).len();
-                index += gap;
-                if index >= text.len() || text[index..].starts_with('}') {
-                    return index + 1;
-                }
-                let used = expand(&text[index..], &path, found);
-                // `as name` of a renamed import.
-                let item = &text[index + used..];
-                let end = item.find([',', '}']).unwrap_or(item.len());
-                index += used + end;
-                if used + end == 0 {
-                    return index + 1;
-                }
+impl Paths {
+    /// Adds the paths of a use tree below a path.
+    fn add_tree(&mut self, tree: &UseTree, mut path: Vec<String>) {
+        match tree {
+            UseTree::Path(part) => {
+                path.push(part.ident.to_string());
+                return self.add_tree(&part.tree, path);
             }
+            UseTree::Group(group) => {
+                return group.items.iter().for_each(|item| self.add_tree(item, path.clone()));
+            }
+            UseTree::Name(name) => path.push(name.ident.to_string()),
+            UseTree::Rename(name) => path.push(name.ident.to_string()),
+            UseTree::Glob(_) => {}
         }
-        if text[index..].starts_with("::") {
-            index += 2;
-        } else {
-            break;
+        self.0.push(path);
+    }
+}
+
+impl Visit<'_> for Paths {
+    fn visit_item_mod(&mut self, module: &ItemMod) {
+        let is_test = |attribute: &Attribute| {
+            attribute.path().is_ident("cfg")
+                && attribute.parse_args::<Ident>().is_ok_and(|name| name == "test")
+        };
+        if !module.attrs.iter().any(is_test) {
+            visit::visit_item_mod(self, module);
         }
     }
-    found.push(path);
-    index
+
+    fn visit_item_use(&mut self, item: &ItemUse) {
+        self.add_tree(&item.tree, Vec::new());
+    }
+
+    fn visit_path(&mut self, path: &syn::Path) {
+        self.0.push(path.segments.iter().map(|segment| segment.ident.to_string()).collect());
+        visit::visit_path(self, path);
+    }
+
+    /// The arguments of a macro, where it is called as a function.
+    fn visit_macro(&mut self, call: &Macro) {
+        let arguments = call.parse_body_with(Punctuated::<Expr, Token![,]>::parse_terminated);
+        arguments.iter().flatten().for_each(|argument| self.visit_expr(argument));
+    }
 }
 
 /// A named path as a path from the crate's root.
@@ -154,8 +137,11 @@ fn read(sources: &[(Vec<String>, bool, String)]) -> Modules {
     let mut modules = Modules::new();
     for (module, is_folder, source) in sources {
         let imports = modules.entry(module.clone()).or_default();
-        for path in named_paths(&without_tests(source)) {
-            let mut target = from_root(&path, module, *is_folder);
+        let mut paths = Paths::default();
+        paths.visit_file(&syn::parse_file(source).expect("Rust"));
+        let relative = |path: &&Vec<String>| matches!(path[0].as_str(), "crate" | "super" | "self");
+        for path in paths.0.iter().filter(relative) {
+            let mut target = from_root(path, module, *is_folder);
             while !target.is_empty() && !known.contains(&target) {
                 target.pop();
             }

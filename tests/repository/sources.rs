@@ -1,4 +1,4 @@
-//! Files of the repository, and Rust source without comments and texts.
+//! Files of the repository.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -35,53 +35,4 @@ pub fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
 pub fn text(path: &Path) -> String {
     fs::read_to_string(root().join(path))
         .unwrap_or_else(|error| panic!("{}: {error}", path.display()))
-}
-
-/// Rust source with comments, texts and characters replaced by spaces; lines keep their numbers.
-pub fn code(source: &str) -> String {
-    let bytes: Vec<char> = source.chars().collect();
-    let mut out = String::with_capacity(source.len());
-    let mut index = 0;
-    let blank = |symbol: char| if symbol == '\n' { '\n' } else { ' ' };
-    while index < bytes.len() {
-        let end = skipped(&bytes[index..]);
-        if end == 0 {
-            out.push(bytes[index]);
-            index += 1;
-        } else {
-            out.extend(bytes[index..index + end].iter().map(|symbol| blank(*symbol)));
-            index += end;
-        }
-    }
-    out
-}
-
-/// Length of the comment, text or character that begins here; 0 for code.
-fn skipped(rest: &[char]) -> usize {
-    match rest {
-        ['/', '/', ..] => rest.iter().position(|symbol| *symbol == '\n').unwrap_or(rest.len()),
-        ['r', '#', '"', ..] => {
-            let end = rest.windows(2).skip(3).position(|two| two == ['"', '#']);
-            end.map_or(rest.len(), |end| end + 5)
-        }
-        ['"', ..] => text_end(rest, '"'),
-        ['\'', '\\', ..] => text_end(rest, '\''),
-        ['\'', _, '\'', ..] => 3,
-        _ => 0,
-    }
-}
-
-fn text_end(rest: &[char], quote: char) -> usize {
-    let mut index = 1;
-    while index < rest.len() && rest[index] != quote {
-        index += if rest[index] == '\\' { 2 } else { 1 };
-    }
-    (index + 1).min(rest.len())
-}
-
-#[test]
-fn comments_and_texts_are_blanked() {
-    let source = "a /* b // \" */ // c\n\"d \\\" e\" 'f' '\\'' r#\"g \" h\"# i";
-    let kept: String = code(source).split_whitespace().collect();
-    assert_eq!(kept, "a/*bi");
 }

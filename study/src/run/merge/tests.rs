@@ -47,42 +47,6 @@ fn part(text: &str) -> Selection {
     Selection::Part(Part::parse(text).unwrap())
 }
 
-/// The table of a folder, without what a clock measures.
-fn table(root: &Path) -> Vec<(String, Vec<String>)> {
-    let table = Results::new(&Disk, root).read_table().unwrap();
-    let columns = table.columns.iter().filter(|column| !column.name.contains("seconds"));
-    let cells =
-        |cells: &[crate::input::value::Value]| cells.iter().map(ToString::to_string).collect();
-    columns.map(|column| (column.name.clone(), cells(&column.cells))).collect()
-}
-
-#[test]
-fn parts_in_folders_of_their_own_give_the_table_of_the_whole() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = |name: &str| folder.path().join(name);
-    let study = study();
-    run_part(&study, &path("whole"), Selection::All);
-    let mut ran = 0;
-    for number in 1..=3 {
-        let summary = run_part(&study, &path(&number.to_string()), part(&format!("{number}/3")));
-        assert_eq!(summary.ran + summary.not_selected, 8);
-        ran += summary.ran;
-    }
-    assert_eq!(ran, 8);
-    let sources: Vec<_> = ["1", "2", "3"].map(path).into();
-    let sources: Vec<Results<'_>> = sources.iter().map(|path| Results::new(&Disk, path)).collect();
-    let file = study.file();
-    let target = path("all");
-    let target = Results::new(&Disk, &target);
-    let merged = merge(&sources, &target, (&study.name, file), &Stop::new()).unwrap();
-    assert_eq!(merged, Merged { copied: 8, ..Merged::default() });
-    assert_eq!(table(&path("all")), table(&path("whole")));
-    // A second time there is nothing to copy, and a run finds nothing to do.
-    let again = merge(&sources, &target, (&study.name, file), &Stop::new()).unwrap();
-    assert_eq!(again, Merged { same: 8, ..Merged::default() });
-    assert_eq!(run_part(&study, &path("all"), Selection::All).ran, 0);
-}
-
 #[test]
 fn other_studies_other_bits_and_damaged_histories_are_named() {
     let folder = tempfile::tempdir().unwrap();

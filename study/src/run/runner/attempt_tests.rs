@@ -7,7 +7,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use super::*;
 use crate::job::control::{Order, Task};
 use crate::job::executor::Outcome;
-use crate::job::limits::Limit;
 use crate::job::{Job, Status};
 use crate::platform::files::Disk;
 use crate::run::fixture::{self, folder, ran};
@@ -62,18 +61,14 @@ impl Reporter for Notes {
 fn run_with(
     root: &Path,
     executor: &dyn Executor,
-    rerun: Option<&[u32]>,
     stop: &Stop,
     interval: Duration,
 ) -> (Summary, Vec<String>) {
-    let ids: Option<BTreeSet<JobId>> =
-        rerun.map(|numbers| numbers.iter().map(|number| fixture::job(*number).id).collect());
     let planner = |finished: &[FinishedRow]| finished.is_empty().then(|| fixture::generation(JOBS));
     let study = Run {
         threads: NonZero::new(2),
         checkpoint_interval: interval,
         stop: stop.clone(),
-        rerun: ids.as_ref(),
         ..fixture::run(Results::new(&Disk, root), &planner, executor)
     };
     let mut notes = Notes(Vec::new());
@@ -82,7 +77,7 @@ fn run_with(
 }
 
 fn run_all(root: &Path, executor: &dyn Executor) -> (Summary, Vec<String>) {
-    run_with(root, executor, None, &Stop::new(), CHECKPOINT_INTERVAL)
+    run_with(root, executor, &Stop::new(), CHECKPOINT_INTERVAL)
 }
 
 /// A process dies while these jobs run.
@@ -130,7 +125,7 @@ fn two_deaths_alone_at_last_put_a_job_in_quarantine_until_it_is_asked_for() {
     let stopped = Stop::new();
     stopped.request(15);
     let nothing = Tasks::new(done);
-    run_with(folder.path(), &nothing, None, &stopped, CHECKPOINT_INTERVAL);
+    run_with(folder.path(), &nothing, &stopped, CHECKPOINT_INTERVAL);
     assert!(nothing.order.lock().unwrap().is_empty());
     die(folder.path(), &[3]);
 
@@ -151,13 +146,8 @@ fn two_deaths_alone_at_last_put_a_job_in_quarantine_until_it_is_asked_for() {
         cell("reason")
     );
 
-    // Another run leaves it alone; a rerun computes it, and there are no old bits to compare.
-    let executor = Tasks::new(done);
-    assert_eq!(run_all(folder.path(), &executor).0.ran, 0);
-    let (summary, _) =
-        run_with(folder.path(), &executor, Some(&[3]), &Stop::new(), CHECKPOINT_INTERVAL);
-    assert_eq!((summary.ran, summary.same, summary.different.len()), (1, 0, 0));
-    assert_eq!(summary.counts.of(Status::Done), 4);
+    // Another run leaves it alone.
+    assert_eq!(run_all(folder.path(), &Tasks::new(done)).0.ran, 0);
 }
 
 #[test]
@@ -167,7 +157,7 @@ fn two_deaths_beside_other_jobs_are_no_quarantine_nor_is_one_before_a_checkpoint
     stopped.request(15);
     for _ in 0..2 {
         die(folder.path(), &[0, 3]);
-        run_with(folder.path(), &Tasks::new(done), None, &stopped, CHECKPOINT_INTERVAL);
+        run_with(folder.path(), &Tasks::new(done), &stopped, CHECKPOINT_INTERVAL);
     }
     let results = Results::new(&Disk, folder.path());
     let mut writer = crate::store::journal::Writer::new(&Disk, results.journal_path());
@@ -180,65 +170,13 @@ fn two_deaths_beside_other_jobs_are_no_quarantine_nor_is_one_before_a_checkpoint
 }
 
 #[test]
-fn a_stopped_job_continues_from_its_checkpoint_which_its_end_removes() {
+fn the_checkpoint_of_a_finished_job_is_removed() {
     let folder = folder();
     let results = Results::new(&Disk, folder.path());
-    let stop = Stop::new();
-    let interrupted = Tasks::new(|task: &Task<'_>| {
-        assert!(task.checkpoint.is_none());
-        if number(task.job) != 3 {
-            return done(task);
-        }
-        stop.request(15);
-        assert_eq!(task.control.order(), Order::End);
-        task.control.store("state of job 3", 0.5);
-        Outcome::Cancelled
-    });
-    let (summary, _) = run_with(folder.path(), &interrupted, None, &stop, CHECKPOINT_INTERVAL);
-    assert_eq!(summary.signal, Some(15));
-    assert_eq!(results.checkpoints().unwrap(), [fixture::job(3).id]);
-    assert!(!results.attempts_path().exists(), "the process ended in order");
-
-    let resumed = Mutex::new(None);
-    let executor = Tasks::new(|task: &Task<'_>| {
-        if number(task.job) == 3 {
-            resumed.lock().unwrap().clone_from(&task.checkpoint);
-        }
-        done(task)
-    });
-    let (summary, _) = run_all(folder.path(), &executor);
-    assert_eq!(summary.counts.of(Status::Done), 4);
-    assert_eq!(resumed.into_inner().unwrap().as_deref(), Some("state of job 3"));
-    assert!(results.checkpoints().unwrap().is_empty());
-    // That of a job that ended in a process that died before it removed the file.
+    run_all(folder.path(), &Tasks::new(done));
+    // The process died before it removed the file.
     results.write_checkpoint(&fixture::job(3).id, "old").unwrap();
     run_all(folder.path(), &Tasks::new(done));
-    assert!(results.checkpoints().unwrap().is_empty());
-}
-
-#[test]
-fn a_limited_job_keeps_its_checkpoint_and_goes_on_when_it_is_run_again() {
-    let folder = folder();
-    let results = Results::new(&Disk, folder.path());
-    let executor = Tasks::new(|task: &Task<'_>| {
-        if number(task.job) == 1 {
-            task.control.store("at the limit", 0.2);
-            return Outcome::Limited(Limit::WallTime(2.0));
-        }
-        done(task)
-    });
-    let (summary, _) = run_all(folder.path(), &executor);
-    assert_eq!((summary.counts.of(Status::Timeout), summary.counts.failed()), (1, 1));
-    assert_eq!(results.checkpoints().unwrap(), [fixture::job(1).id]);
-    let executor = Tasks::new(|task: &Task<'_>| {
-        assert_eq!(task.checkpoint.as_deref(), Some("at the limit"));
-        done(task)
-    });
-    assert_eq!(run_all(folder.path(), &executor).0.ran, 0, "a limit is a result");
-    let (summary, _) =
-        run_with(folder.path(), &executor, Some(&[1]), &Stop::new(), CHECKPOINT_INTERVAL);
-    assert_eq!((summary.ran, summary.different.len()), (1, 0));
-    assert_eq!(summary.counts.of(Status::Done), 4);
     assert!(results.checkpoints().unwrap().is_empty());
 }
 
@@ -256,6 +194,6 @@ fn a_checkpoint_is_due_after_its_interval_and_costs_a_hundredth_at_most() {
         }
         done(task)
     });
-    let (summary, _) = run_with(folder.path(), &executor, None, &Stop::new(), Duration::ZERO);
+    let (summary, _) = run_with(folder.path(), &executor, &Stop::new(), Duration::ZERO);
     assert_eq!(summary.counts.of(Status::Done), 4);
 }

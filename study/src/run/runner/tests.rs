@@ -253,30 +253,6 @@ fn a_torn_journal_line_loses_only_its_job() {
 }
 
 #[test]
-fn a_stop_keeps_finished_jobs_and_shows_the_others_as_pending() {
-    let folder = folder();
-    let stop = Stop::new();
-    let script = |number| {
-        if number == 4 {
-            stop.request(2);
-        }
-        ran(number)
-    };
-    let executor = Scripted::new(script);
-    let planner = generation_zero(12);
-    let study = fixture::run(Results::new(&Disk, folder.path()), &planner, &executor);
-    let study = Run { stop: stop.clone(), ..study };
-    let summary = run(&study, &mut Silent).unwrap();
-    assert_eq!(summary.signal, Some(2));
-    assert_eq!(summary.counts.status["done"], 4, "0, 1, 3 and the one that was running");
-    assert_eq!(summary.counts.status["pending"], 7);
-    assert_eq!(table(folder.path()).rows(), 12);
-    let again = Scripted::new(ran);
-    run_quiet(folder.path(), 12, 1, &again);
-    assert_eq!(executed(&again), 7);
-}
-
-#[test]
 fn a_resumed_study_plans_its_generations_again() {
     let folder = folder();
     // Two generations: the second is planned from the rows of the first.
