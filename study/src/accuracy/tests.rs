@@ -171,7 +171,7 @@ fn a_feature_changes_the_bias_and_deviations_make_the_error_wider() {
     for entry in &mut entries {
         (entry.scatter, entry.deviation, entry.scenes) = (0.03, 0.04, 20);
     }
-    table.errors = entries.into();
+    table.errors = entries;
     let error = table.error(&method, &features(&two_storeys), promised).unwrap();
     // 20 scenes less bias and slope leave 18 degrees of freedom.
     let width = 1.734 * 0.05;

@@ -37,6 +37,12 @@ pub fn table(text: &str) -> Table {
     Table { columns: names.enumerate().map(column).collect() }
 }
 
+/// The same of lines that a test computes.
+pub fn table_of(names: &str, rows: impl Iterator<Item = String>) -> Table {
+    let rows: Vec<String> = rows.collect();
+    table(&format!("{names}\n{}", rows.join("\n")))
+}
+
 /// The rows of a table.
 pub fn all(table: &Table) -> Vec<usize> {
     (0..table.rows()).collect()

@@ -9,14 +9,11 @@ type Run = (&'static str, f64, i64, f64, f64, &'static str);
 
 fn table(runs: &[Run]) -> Table {
     let names =
-        "job strategy mass seed status verdict peak_vz peak_kinetic_energy numerically_damped\n";
-    let mut text = names.to_owned();
-    for (job, (strategy, mass, seed, speed, energy, verdict)) in runs.iter().enumerate() {
-        text += &format!(
-            "{job} {strategy} {mass:?} {seed} done {verdict} {speed:?} {energy:?} false\n"
-        );
-    }
-    fixture::table(&text)
+        "job strategy mass seed status verdict peak_vz peak_kinetic_energy numerically_damped";
+    let row = |(job, (strategy, mass, seed, speed, energy, verdict)): (usize, &Run)| {
+        format!("{job} {strategy} {mass:?} {seed} done {verdict} {speed:?} {energy:?} false")
+    };
+    fixture::table_of(names, runs.iter().enumerate().map(row))
 }
 
 /// Two strategies, two masses, two seeds. Rapid has half the loads; once a seed of it stalls.

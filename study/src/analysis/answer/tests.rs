@@ -56,11 +56,11 @@ fn the_hardest_job_can_be_trusted_where_any_can() {
 /// Jobs `a`, `b`, … of parameters `strategy`, `mass`: done, deployed, with these measures.
 fn study(rows: &[(&str, f64, f64, f64)]) -> Table {
     let [time, energy] = HEADLINE.map(ColumnId::name);
-    let mut text = format!("job strategy mass status verdict {time} {energy} passages\n");
-    for (row, (strategy, mass, time, energy)) in rows.iter().enumerate() {
-        text += &format!("{row} {strategy} {mass:?} done deployed {time:?} {energy:?} 0\n");
-    }
-    fixture::table(&text)
+    let names = format!("job strategy mass status verdict {time} {energy} passages");
+    let row = |(row, (strategy, mass, time, energy)): (usize, &(&str, f64, f64, f64))| {
+        format!("{row} {strategy} {mass:?} done deployed {time:?} {energy:?} 0")
+    };
+    fixture::table_of(&names, rows.iter().enumerate().map(row))
 }
 
 /// The values of a parameter, ranked as the answer does.

@@ -7,12 +7,11 @@ use crate::analysis::fixture::{self, all};
 
 /// A table of parameters `a`, `b` and a measure.
 pub(super) fn table(rows: &[(i64, f64, &str, Option<f64>)]) -> Table {
-    let mut text = "job a b status peak_vz\n".to_owned();
-    for (job, (a, b, status, value)) in rows.iter().enumerate() {
+    let lines = rows.iter().enumerate().map(|(job, (a, b, status, value))| {
         let value = value.map_or("-".to_owned(), |value| format!("{value:?}"));
-        text += &format!("{job} {a} {b:?} {status} {value}\n");
-    }
-    let mut table = fixture::table(&text);
+        format!("{job} {a} {b:?} {status} {value}")
+    });
+    let mut table = fixture::table_of("job a b status peak_vz", lines);
     // Also of rows without a value.
     table.columns[4].cell_type = CellType::Number;
     table

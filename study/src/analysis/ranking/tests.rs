@@ -9,16 +9,16 @@ type Run = (&'static str, f64, i64, f64, &'static str);
 const DEPLOYED: &str = "deployed";
 
 fn table(runs: &[Run]) -> Table {
-    let mut text = "job strategy mass seed status verdict peak_vz\n".to_owned();
-    for (job, (strategy, mass, seed, speed, end)) in runs.iter().enumerate() {
+    let row = |(job, (strategy, mass, seed, speed, end)): (usize, &Run)| {
         let (status, verdict) = match *end {
             "pending" => ("pending", "-"),
             "" => ("done", "-"),
             verdict => ("done", verdict),
         };
-        text += &format!("{job} {strategy} {mass:?} {seed} {status} {verdict} {speed:?}\n");
-    }
-    fixture::table(&text)
+        format!("{job} {strategy} {mass:?} {seed} {status} {verdict} {speed:?}")
+    };
+    let names = "job strategy mass seed status verdict peak_vz";
+    fixture::table_of(names, runs.iter().enumerate().map(row))
 }
 
 fn ranked(runs: &[Run], by: &[&str], limits: &[ResultLimit]) -> Ranking {
