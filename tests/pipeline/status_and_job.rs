@@ -208,6 +208,9 @@ fn job_prints_the_stored_row_scene_and_history() {
     assert_eq!(lines[7], format!("{},{}", last[0], last[1]), "the last sample is always shown");
     let infeasible = &ids(&folder, "infeasible")[0];
     folder.refuses(&["job", infeasible, "--history"], "the point is infeasible");
+    std::fs::write(file_of(&folder, id), "no history").unwrap();
+    let said = folder.stdout(&["job", id, "--all"]);
+    assert!(said.contains("\nhistory "), "a line says what the file has: {said}");
 }
 
 #[test]

@@ -29,7 +29,7 @@ const READERS: [&str; 11] = [
     "chart results/s --history z_rim --jobs JOB --out out.svg",
     "chart results/s --measure peak_vz --over mass_flow_rate --out out.svg",
     "frames JOB results/s --out out.svg",
-    "plan s.json --summary",
+    "plan s.json",
 ];
 /// What `status --json` prints for a sound folder.
 const NO_FINDINGS: &str = "\"findings\":[]";

@@ -62,9 +62,16 @@ pub(super) fn rows(job: &Inspected, in_units: bool) -> Vec<Vec<Value>> {
             row(name, value.clone(), &column.unit, meaning)
         }
     });
-    let events = job.history().map(|history| history.events).unwrap_or_default();
-    let events = events
-        .iter()
-        .map(|event| row(event.kind.name(), Value::Number(event.time), "s", event.kind.meaning()));
-    columns.chain(events).collect()
+    let mut rows: Vec<Vec<Value>> = columns.collect();
+    if stored.record(id).is_none_or(|record| record.file_hash.is_none()) {
+        return rows;
+    }
+    // The row is shown even if its file cannot be read: the error is then one of the lines.
+    match job.history() {
+        Ok(history) => rows.extend(history.events.iter().map(|event| {
+            row(event.kind.name(), Value::Number(event.time), "s", event.kind.meaning())
+        })),
+        Err(error) => rows.push(row("history", Value::Text(error.to_string()), "", "")),
+    }
+    rows
 }

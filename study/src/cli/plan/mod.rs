@@ -13,9 +13,9 @@ use forecast::forecast;
 
 use super::memory::Memory;
 use super::options::{OutputOptions, QuietOption, ResultsOption, SetOption, UnitsOption};
-use super::print::{self, print_rows, print_table};
+use super::print::{self, print_table};
 use super::results::results_folder;
-use super::{Format, changes, notes, output_error};
+use super::{changes, notes};
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Parameters;
@@ -44,9 +44,6 @@ pub struct Args {
     /// Name the cheapest model and mesh that keep this relative error of every measure but `peak_vz`, as in "5 %".
     #[arg(long, value_name = "ERROR")]
     accuracy: Option<String>,
-    /// Print only the numbers of points and jobs.
-    #[arg(long)]
-    summary: bool,
     #[command(flatten)]
     output: OutputOptions,
     #[command(flatten)]
@@ -61,13 +58,8 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let study = Study::load(&args.study, &args.set.set)?;
     let advice = advice::advice(&study, args.accuracy.as_deref())?;
     let Some(generation) = next_jobs(&study, &[]) else { return Ok(()) };
-    let format = args.output.format();
     let counts = PlanCounts::of(&study, &generation);
-    if args.summary {
-        print_summary(&counts, format, out)?;
-    } else {
-        print_points(args, &study, &generation, out)?;
-    }
+    print_points(args, &study, &generation, out)?;
     if !args.quiet.quiet {
         eprintln!("{}: {}", study.name, summary(&study, &counts));
         print_progress_and_forecast(args, &study, &generation)?;
@@ -210,27 +202,4 @@ fn summary(study: &Study, counts: &PlanCounts) -> String {
         counts.infeasible,
         counts.filtered
     )
-}
-
-/// The numbers of points and jobs, one row each; an object in JSON.
-fn print_summary(counts: &PlanCounts, format: Format, out: &mut dyn Write) -> Result<()> {
-    let numbers = [
-        ("points", counts.points),
-        ("jobs", counts.jobs),
-        ("duplicates", counts.duplicates),
-        ("infeasible", counts.infeasible),
-        ("filtered", counts.filtered),
-    ];
-    if format == Format::Json {
-        let object: serde_json::Map<_, _> =
-            numbers.map(|(name, number)| (name.to_owned(), number.into())).into_iter().collect();
-        return writeln!(out, "{}", serde_json::Value::from(object)).map_err(output_error);
-    }
-    let rows = numbers.map(|(name, number)| {
-        vec![
-            Value::Text(name.to_owned()),
-            Value::Integer(i64::try_from(number).unwrap_or(i64::MAX)),
-        ]
-    });
-    print_rows(&["quantity", "number"], &rows, format, out)
 }
