@@ -7,7 +7,6 @@ use super::film_audit::FilmAudit;
 use super::interface::Integrator;
 use crate::collision::monitor::TunnellingMonitor;
 use crate::mechanics::forces::membrane::{NORMAL_TO_GRADIENT, NodeForces, stress_on_fraction};
-use crate::mechanics::supports::RigidPlane;
 use crate::output::ledger::{GasBalance, Ledger};
 use crate::system::{FilmState, FilmSystem};
 
@@ -53,16 +52,6 @@ impl<'a> FilmView<'a> {
         self.accounting().gas_balance(self.system, self.state)
     }
 
-    /// Kinetic energy in the form that the method conserves, J.
-    pub fn kinetic_energy(&self) -> f64 {
-        self.ledger().kinetic
-    }
-
-    /// Energy stored in the film, J: elastic energy, that of creep and of further terms.
-    pub fn strain_energy(&self) -> f64 {
-        self.ledger().strain
-    }
-
     /// Overpressure p − `p_ambient`, Pa.
     pub fn overpressure(&self) -> f64 {
         self.system.overpressure(self.state)
@@ -71,11 +60,6 @@ impl<'a> FilmView<'a> {
     /// Sum of all forces on a node, N.
     pub fn force(&self, node: usize) -> Vector3<f64> {
         self.system.node_force(self.forces(), self.overpressure(), node)
-    }
-
-    /// Force of the film on a rigid plane along the plane's normal, N.
-    pub fn force_on(&self, body: &RigidPlane) -> f64 {
-        self.system.force_on(self.forces(), self.overpressure(), body)
     }
 
     /// Force of the film on a support that holds `nodes` along `held`, N, and its moment about the origin,

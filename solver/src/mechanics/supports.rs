@@ -204,23 +204,6 @@ impl Supports {
         all
     }
 
-    /// Holds the components of these nodes that `fix` names with letters of "xyz".
-    pub fn hold(&mut self, nodes: &[u32], fix: &str) {
-        for node in nodes {
-            let node = *node as usize;
-            let mut free = self.free.get(node);
-            for axis in fix.chars() {
-                match axis {
-                    'x' => free.x = 0.0,
-                    'y' => free.y = 0.0,
-                    'z' => free.z = 0.0,
-                    _ => {}
-                }
-            }
-            self.free.set(node, free);
-        }
-    }
-
     /// Whether a node is held in all three directions.
     pub fn hold_fully(&self, node: u32) -> bool {
         self.projector(node as usize) == Matrix3::zeros()

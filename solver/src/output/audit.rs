@@ -68,17 +68,8 @@ impl Audit {
     }
 }
 
-/// Time (s) of the first sample whose ledger residual is above [`MAX_LEDGER_RESIDUAL`] or NaN.
-pub fn first_drift(history: &History) -> Option<f64> {
-    first_above(history, "ledger_residual", MAX_LEDGER_RESIDUAL)
-}
-
-/// Time (s) of the first sample whose residual of the gas balance is above [`MAX_GAS_RESIDUAL`] or NaN.
-pub fn first_imbalance(history: &History) -> Option<f64> {
-    first_above(history, "gas_residual", MAX_GAS_RESIDUAL)
-}
-
-fn first_above(history: &History, column: &str, bound: f64) -> Option<f64> {
+/// Time (s) of the first sample whose value in a column is above a bound or NaN.
+pub fn first_above(history: &History, column: &str, bound: f64) -> Option<f64> {
     let within_bound = |residual: f64| residual <= bound;
     let index = history.column(column).iter().position(|value| !within_bound(*value))?;
     Some(history.column("time")[index])
@@ -97,7 +88,9 @@ mod tests {
     }
 
     #[test]
-    fn first_drift_is_the_first_sample_above_the_bound() {
+    fn the_first_sample_above_the_bound_is_found() {
+        let first_drift =
+            |history: &History| first_above(history, "ledger_residual", MAX_LEDGER_RESIDUAL);
         let within = [sample(0.0, 0.0, 0.0, 0.0), sample(0.1, 3.0, 1.0, 4.0)];
         assert_eq!(first_drift(&History::of(&within)), None);
         let drifting =

@@ -114,27 +114,20 @@ pub struct GasBalance {
 }
 
 impl GasBalance {
-    /// Mass error since `start`, kg.
-    fn mass_defect(&self, start: &Self) -> f64 {
-        (self.mass - start.mass) - self.mass_in + self.mass_out
-    }
-
-    /// Energy error since `start`, J.
-    fn energy_defect(&self, start: &Self) -> f64 {
-        (self.internal_energy - start.internal_energy) - self.enthalpy_in + self.enthalpy_out
+    /// Errors of mass (kg) and energy (J) since `start`.
+    fn defects(&self, start: &Self) -> [f64; 2] {
+        let energy = (self.internal_energy - start.internal_energy) - self.enthalpy_in
+            + self.enthalpy_out
             - self.heat
-            + self.gas_work
+            + self.gas_work;
+        [(self.mass - start.mass) - self.mass_in + self.mass_out, energy]
     }
 
-    /// Divisor of the mass error, kg.
-    fn mass_moved(&self, start: &Self) -> f64 {
-        start.mass + self.mass_in + (-self.mass_out).max(0.0)
-    }
-
-    /// Divisor of the energy error, J.
-    fn energy_moved(&self, start: &Self) -> f64 {
-        let entered = (-self.enthalpy_out).max(0.0);
-        start.internal_energy + self.enthalpy_in + entered + self.heat.abs() + self.gas_work.abs()
+    /// Divisors of these errors, kg and J.
+    fn moved(&self, start: &Self) -> [f64; 2] {
+        let entered = [self.mass_out, self.enthalpy_out].map(|out| (-out).max(0.0));
+        let energy = start.internal_energy + self.enthalpy_in + entered[1];
+        [start.mass + self.mass_in + entered[0], energy + self.heat.abs() + self.gas_work.abs()]
     }
 }
 
@@ -164,11 +157,11 @@ pub fn residuals(series: &[Ledger]) -> Vec<f64> {
 /// Residual of the gas at every sample of a series: the larger one of mass and energy.
 pub fn gas_residuals(series: &[GasBalance]) -> Vec<f64> {
     let Some(start) = series.first() else { return Vec::new() };
-    let column = |value: fn(&GasBalance, &GasBalance) -> f64| -> Vec<f64> {
-        series.iter().map(|balance| value(balance, start)).collect()
-    };
-    let mass = relative(&column(GasBalance::mass_defect), &column(GasBalance::mass_moved));
-    let energy = relative(&column(GasBalance::energy_defect), &column(GasBalance::energy_moved));
+    let [mass, energy] = [0, 1].map(|entry| {
+        let defects: Vec<f64> = series.iter().map(|gas| gas.defects(start)[entry]).collect();
+        let moved: Vec<f64> = series.iter().map(|gas| gas.moved(start)[entry]).collect();
+        relative(&defects, &moved)
+    });
     mass.iter().zip(&energy).map(|(mass, energy)| mass.max(*energy)).collect()
 }
 

@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn overlapping_windows_add_up() {
+    fn overlapping_windows_add_up_and_none_let_nothing_in() {
         let schedule = Schedule::new(&[window(0.0, 2.0, 1.0, 300.0), window(1.0, 3.0, 2.0, 200.0)]);
         assert_eq!(schedule.change_times(), [0.0, 1.0, 2.0, 3.0]);
         let both = schedule.between(1.0, 2.0);
@@ -68,13 +68,8 @@ mod tests {
         assert_eq!(schedule.between(3.0, 4.0), Inflow::default());
         assert_eq!(schedule.mass_until(1.5), 1.5 + 1.0);
         assert_eq!(schedule.mass_until(9.0), 2.0 + 4.0);
-    }
-
-    #[test]
-    fn a_schedule_without_windows_has_no_inflow() {
-        let schedule = Schedule::new(&[]);
-        assert!(schedule.change_times().is_empty());
-        assert_eq!(schedule.between(0.0, 1.0), Inflow::default());
-        assert_eq!(schedule.mass_until(1.0), 0.0);
+        let empty = Schedule::new(&[]);
+        assert!(empty.change_times().is_empty());
+        assert_eq!((empty.between(0.0, 1.0), empty.mass_until(1.0)), (Inflow::default(), 0.0));
     }
 }

@@ -19,7 +19,7 @@ use nalgebra::Vector3;
 
 use super::equations::Equations;
 use super::newton::{
-    Equilibrium, FIRST_SHIFT, IterationObserver, NEAR_SHIFT, NewtonSearch, StaticFailure,
+    Continues, Equilibrium, FIRST_SHIFT, NEAR_SHIFT, NewtonSearch, StaticFailure,
     StaticFailureKind, Tolerances, extent, tensile_stiffness,
 };
 use super::relaxation::Relaxation;
@@ -69,13 +69,13 @@ pub fn settle(
     positions: &Field,
     from: Option<f64>,
     tolerances: &Tolerances,
-    observer: IterationObserver<'_>,
+    continues: Continues<'_>,
 ) -> Result<Equilibrium, StaticFailure> {
     let mut continuation = Continuation {
         film,
         equations: Equations::new(film, positions),
         tolerances,
-        observer,
+        continues,
         iterations: 0,
     };
     let stages = stages(film, positions, from);
@@ -175,7 +175,7 @@ struct Continuation<'a, 'b> {
     film: &'a FilmSystem,
     equations: Equations,
     tolerances: &'a Tolerances,
-    observer: IterationObserver<'b>,
+    continues: Continues<'b>,
     iterations: u32,
 }
 
@@ -268,7 +268,7 @@ impl Continuation<'_, '_> {
         let tolerances =
             &Tolerances { iterations: tolerances.iterations.min(remaining), ..*tolerances };
         let mut search = NewtonSearch::new(&film, &mut self.equations, positions);
-        let found = search.run(shift, tolerances, &mut *self.observer);
+        let found = search.run(shift, tolerances, &mut *self.continues);
         self.iterations += match &found {
             Ok(found) => found.iterations,
             Err(failure) => failure.iterations,

@@ -10,8 +10,6 @@
 //! method alone; [`Relaxation`] is damped motion, slower but more robust. Each ends with a state whose
 //! residual is small compared with the load, or with a typed failure.
 
-use core::ops::ControlFlow;
-
 use nalgebra::{Matrix3, Vector3};
 
 use crate::geometry::field::Field;
@@ -30,8 +28,7 @@ mod relaxation;
 
 pub use approach::settle;
 pub use newton::{
-    Equilibrium, Iteration, IterationObserver, StaticFailure, StaticFailureKind, Tolerances,
-    equilibrium,
+    Continues, Equilibrium, StaticFailure, StaticFailureKind, Tolerances, equilibrium,
 };
 pub use relaxation::{Relaxation, Unsettled};
 
@@ -87,20 +84,13 @@ pub struct Reaction {
 }
 
 /// The static equilibrium of a scene under its fixed pressure, with moving supports at the end of their
-/// motion. Velocities, gas, release and times have no effect.
+/// motion. Velocities, gas, release and times have no effect. The search may start from a `known`
+/// equilibrium of the same scene at another overpressure (Pa): it needs fewer steps if the pressure is
+/// lower.
 pub fn solve(
     scene: &FilmScene,
-    observer: IterationObserver<'_>,
-) -> Result<StaticSolution, StaticError> {
-    solve_from(scene, None, observer)
-}
-
-/// [`solve`], starting from a known equilibrium of the same scene at another overpressure (Pa). It needs
-/// fewer steps if the pressure is lower.
-pub fn solve_from(
-    scene: &FilmScene,
     known: Option<(&StaticSolution, f64)>,
-    observer: IterationObserver<'_>,
+    continues: Continues<'_>,
 ) -> Result<StaticSolution, StaticError> {
     let Filling::Pressure(overpressure) = scene.filling else { return Err(StaticError::Gas) };
     scene.shell.check()?;
@@ -117,7 +107,7 @@ pub fn solve_from(
     };
     let (positions, from) =
         known.map_or((&start, None), |(state, pressure)| (&state.positions, Some(pressure)));
-    let equilibrium = settle(&film, positions, from, &Tolerances::default(), observer)?;
+    let equilibrium = settle(&film, positions, from, &Tolerances::default(), continues)?;
     let FilmSystem { model, supports, .. } = film;
     let strain = strain_energy(&model, &equilibrium.positions);
     let volume = scene.shell.volume(|node| equilibrium.positions.get(node as usize));
@@ -147,11 +137,6 @@ pub fn solve_from(
         forces: equilibrium.forces,
         model,
     })
-}
-
-/// [`solve`] without an observer.
-pub fn solve_unobserved(scene: &FilmScene) -> Result<StaticSolution, StaticError> {
-    solve(scene, &mut |_| ControlFlow::Continue(()))
 }
 
 fn reaction(support: &FilmSupport, equilibrium: &Equilibrium) -> Reaction {

@@ -11,8 +11,6 @@
 //! alone. That is the slope of the energy, and it also exists without an energy (open film under a
 //! follower pressure). A step to a smaller slope lowers the energy.
 
-use core::ops::ControlFlow;
-
 use nalgebra::Vector3;
 
 use super::equations::Equations;
@@ -41,23 +39,8 @@ impl Default for Tolerances {
     }
 }
 
-/// Progress of a search.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Iteration {
-    /// Steps taken.
-    pub index: u32,
-    /// Residual force over the load, a fraction.
-    pub residual: f64,
-    /// Largest displacement of the next full step, m.
-    pub step: f64,
-    /// μ.
-    pub shift: f64,
-    /// α of the last step.
-    pub fraction: f64,
-}
-
-/// Observes every step and may end the search.
-pub type IterationObserver<'a> = &'a mut dyn FnMut(&Iteration) -> ControlFlow<()>;
+/// Called at every step of a search; `false` ends it.
+pub type Continues<'a> = &'a mut dyn FnMut() -> bool;
 
 /// Why a search found no equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -71,7 +54,7 @@ pub enum StaticFailureKind {
     /// A force is not finite.
     #[error("a force is not finite")]
     NotFinite,
-    /// The observer ended the search.
+    /// The caller ended the search.
     #[error("the search was stopped")]
     Stopped,
 }
@@ -106,8 +89,6 @@ pub struct Equilibrium {
     pub iterations: u32,
     /// Residual force over the load, a fraction.
     pub residual: f64,
-    /// μ of the last step.
-    pub shift: f64,
 }
 
 /// Lower bound of μ. It determines rigid motions and slack film. Chosen.
@@ -136,10 +117,10 @@ pub fn equilibrium(
     film: &FilmSystem,
     positions: Field,
     tolerances: &Tolerances,
-    observer: IterationObserver<'_>,
+    continues: Continues<'_>,
 ) -> Result<Equilibrium, StaticFailure> {
     let mut equations = Equations::new(film, &positions);
-    NewtonSearch::new(film, &mut equations, positions).run(FIRST_SHIFT, tolerances, observer)
+    NewtonSearch::new(film, &mut equations, positions).run(FIRST_SHIFT, tolerances, continues)
 }
 
 /// A search in progress.
@@ -250,7 +231,7 @@ impl<'a> NewtonSearch<'a> {
         &mut self,
         first_shift: f64,
         tolerances: &Tolerances,
-        observer: IterationObserver<'_>,
+        continues: Continues<'_>,
     ) -> Result<Equilibrium, StaticFailure> {
         let size = extent(&self.positions);
         let (mut shift, mut fraction) = (first_shift, 0.0);
@@ -266,21 +247,14 @@ impl<'a> NewtonSearch<'a> {
             let settled = factored.filter(|shift| {
                 residual <= tolerances.residual && fraction >= 0.5 && *shift <= MAX_SETTLED_SHIFT
             });
-            let estimate = settled.map(|shift| (self.step(), shift));
-            if let Some((step, shift)) = estimate {
+            let estimate = settled.map(|_| self.step());
+            if let Some(step) = estimate {
                 let displacement = self.equations.unknowns.largest(&step);
-                let iteration = Iteration {
-                    index: self.iterations,
-                    residual,
-                    step: displacement,
-                    shift,
-                    fraction,
-                };
                 if displacement <= tolerances.step * size {
-                    if observer(&iteration).is_break() {
+                    if !continues() {
                         return Err(self.failure(StaticFailureKind::Stopped));
                     }
-                    return Ok(self.found(&step, residual, shift));
+                    return Ok(self.found(&step, residual));
                 }
             }
             shift = self.factor(shift)?;
@@ -288,16 +262,14 @@ impl<'a> NewtonSearch<'a> {
             let step = self.step();
             let along = dot(&step, &self.along);
             let displacement = self.equations.unknowns.largest(&step);
-            let iteration =
-                Iteration { index: self.iterations, residual, step: displacement, shift, fraction };
-            if observer(&iteration).is_break() {
+            if !continues() {
                 return Err(self.failure(StaticFailureKind::Stopped));
             }
             if residual <= tolerances.residual
                 && displacement <= tolerances.step * size
                 && shift <= MAX_SETTLED_SHIFT
             {
-                return Ok(self.found(&step, residual, shift));
+                return Ok(self.found(&step, residual));
             }
             if self.iterations >= tolerances.iterations {
                 return Err(self.failure(StaticFailureKind::IterationLimit));
@@ -333,7 +305,7 @@ impl<'a> NewtonSearch<'a> {
 
     /// The equilibrium found, after a last full step, which is known already, if it lowers the residual:
     /// the reactions of a vessel then balance to rounding.
-    fn found(&mut self, step: &[f64], residual: f64, shift: f64) -> Equilibrium {
+    fn found(&mut self, step: &[f64], residual: f64) -> Equilibrium {
         self.evaluate(step, 1.0);
         let mut last = self.residual();
         if last < residual {
@@ -347,7 +319,6 @@ impl<'a> NewtonSearch<'a> {
             forces: self.forces.clone(),
             iterations: self.iterations,
             residual: last,
-            shift,
         }
     }
 

@@ -72,7 +72,7 @@ impl Relaxation {
             film = film.with(|system, settings| (FilmSystem { mass_damping, ..system }, settings));
             let now = film.view();
             let energy = now.overpressure() * now.state.volume;
-            let settled = now.kinetic_energy().abs() < self.max_kinetic_fraction * energy;
+            let settled = now.ledger().kinetic.abs() < self.max_kinetic_fraction * energy;
             settled_checks = if settled { settled_checks + 1 } else { 0 };
         }
         Ok(film)

@@ -67,11 +67,6 @@ impl FilmSystem {
         }
     }
 
-    /// Whether gas fills the film.
-    pub fn is_gas(&self) -> bool {
-        matches!(self.pressure_load, PressureLoad::Gas(_))
-    }
-
     /// Kinetic energy of nodes and rigid planes of a state, J.
     pub fn kinetic_energy(&self, state: &FilmState) -> f64 {
         let nodes = self.model.mass.iter().zip(state.velocities.iter());

@@ -1,6 +1,5 @@
 //! Solves one scene: motion, with checkpoints, or static equilibrium.
 
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -79,11 +78,7 @@ pub fn solve(
 }
 
 fn equilibrium(scene: &SceneFile, stop: &Stop) -> Result<(Status, Ended)> {
-    let mut check = |_: &statics::Iteration| match stop.requested() {
-        Some(_) => ControlFlow::Break(()),
-        None => ControlFlow::Continue(()),
-    };
-    match statics::solve(&scene.film, &mut check) {
+    match statics::solve(&scene.film, None, &mut || stop.requested().is_none()) {
         Ok(solution) => {
             // Closed film turned inside out has an equilibrium too, but not the wanted one.
             let inside_out = scene.film.shell.is_closed() && solution.volume <= 0.0;

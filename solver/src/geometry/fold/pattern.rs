@@ -99,7 +99,7 @@ impl FoldPattern {
                 && self.smallest_storey_strain(height) <= MAX_STOWED_STRAIN
                 && self.stowed_strain(height) <= MAX_STOWED_STRAIN
         };
-        let nearest = scan::nearest_below(stowed, feasible);
+        let nearest = scan::nearest_real(stowed, &[scan::Direction::Down], feasible);
         let nearest = nearest.map(|value| Nearest { key: "stowed_height", value });
         Err(FoldError::Infeasible { reason, nearest: nearest.into_iter().collect() })
     }

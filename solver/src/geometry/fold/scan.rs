@@ -46,11 +46,6 @@ pub(super) fn nearest_whole(start: f64, feasible: impl Fn(f64) -> bool) -> Optio
     })
 }
 
-/// The largest feasible value below an infeasible one; `None` beyond [`MAX_FACTOR`].
-pub(super) fn nearest_below(start: f64, feasible: impl Fn(f64) -> bool) -> Option<f64> {
-    nearest_real(start, &[Direction::Down], feasible)
-}
-
 /// The feasible value nearest to an infeasible one in these directions, rounded into the feasible
 /// range; `None` beyond [`MAX_FACTOR`].
 pub(super) fn nearest_real(

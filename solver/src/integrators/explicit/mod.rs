@@ -29,7 +29,7 @@ use crate::integrators::interface::{Advance, Budget, Computed, Integrator, Inter
 use crate::integrators::{IntegratorEntry, StoredIntegrator};
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::damping::stable_share;
-use crate::mechanics::forces::membrane::{MembraneSums, stored_energy};
+use crate::mechanics::forces::membrane::stored_energy;
 use crate::mechanics::forces::pressure::gas_frequency_squared;
 use crate::output::ledger::Ledger;
 use crate::output::outcome::{AuditKind, Failure};
@@ -262,7 +262,11 @@ impl Explicit {
         let volume = sums.six_volumes / 6.0;
         let max_speed = max_speed_squared.sqrt();
         self.check_finite(system, state, max_speed * drift, volume)?;
-        self.add_dissipation(system, &sums);
+        let accounting = &mut self.motion.accounting;
+        let factor = system.fault_factor(Term::NumericalWork);
+        accounting.works.numerical_dissipation += sums.numerical_dissipation * factor;
+        accounting.works.material_loss += sums.material_loss;
+        accounting.film_stress = accounting.film_stress.max(sums.largest_stress);
         if matches!(system.pressure_load, PressureLoad::Gas(_)) && volume <= 0.0 {
             return Err(self.inverted_volume(system, state));
         }
@@ -274,15 +278,6 @@ impl Explicit {
         stopwatch.begins(Stage::Audit);
         self.check_source(system, state, max_speed)?;
         self.check_stretch(system, state)
-    }
-
-    /// Adds what a step dissipated in the film.
-    fn add_dissipation(&mut self, system: &FilmSystem, sums: &MembraneSums) {
-        let accounting = &mut self.motion.accounting;
-        let factor = system.fault_factor(Term::NumericalWork);
-        accounting.works.numerical_dissipation += sums.numerical_dissipation * factor;
-        accounting.works.material_loss += sums.material_loss;
-        accounting.film_stress = accounting.film_stress.max(sums.largest_stress);
     }
 
     /// Adds half a step's work of the forces now along the velocities now: of contact, of moving supports,

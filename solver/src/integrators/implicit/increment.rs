@@ -15,7 +15,7 @@ use super::linear_system::LinearSystem;
 use crate::geometry::field::Field;
 use crate::mechanics::forces::membrane::CreepStrain;
 use crate::scene::inflow::Inflow;
-use crate::system::{Evaluation, FilmState, FilmSystem, Workspace};
+use crate::system::{Evaluation, FilmState, FilmSystem, PressureLoad, Workspace};
 
 /// What a step minimises.
 #[derive(Debug, Clone)]
@@ -93,7 +93,8 @@ impl Increment<'_> {
             inertia += body.plane.mass * travel * travel;
         }
         let potential = evaluation.energy() + 0.5 * self.weight * inertia;
-        let valid = evaluation.volume > 0.0 || !system.is_gas();
+        let valid = evaluation.volume > 0.0
+            || matches!(system.pressure_load, PressureLoad::Overpressure(_));
         (evaluation, if valid { potential } else { f64::NAN })
     }
 

@@ -338,14 +338,6 @@ impl Implicit {
     pub(super) fn add_numerical_dissipation(&mut self, energy: f64) {
         self.motion.accounting.works.numerical_dissipation += energy;
     }
-
-    pub(super) fn to_store(&self) -> StoredImplicit {
-        StoredImplicit {
-            motion: self.motion.clone(),
-            path_length: self.workspace.path_length(),
-            ordered_at: self.newton.ordered_at.clone(),
-        }
-    }
 }
 
 /// End of a step of about `length` (s), s: within a limit, without a tiny last step. Where the limit is the target,
@@ -393,7 +385,11 @@ impl Integrator for Implicit {
     }
 
     fn stored(&self) -> Option<StoredIntegrator> {
-        Some(StoredIntegrator::Implicit(Box::new(self.to_store())))
+        Some(StoredIntegrator::Implicit(Box::new(StoredImplicit {
+            motion: self.motion.clone(),
+            path_length: self.workspace.path_length(),
+            ordered_at: self.newton.ordered_at.clone(),
+        })))
     }
 
     fn boxed(&self) -> Box<dyn Integrator> {

@@ -3,17 +3,11 @@
 //! ```text
 //! dm/dt = ṁ_in − ṁ_out
 //! dU/dt = ṁ_in cp T_in − ṁ_out cp T − p dV/dt + Q̇        Q̇ = h A (T_film − T)
-//! T = U/(m cv)          p = (γ − 1) U/V                   γ = cp/cv, cv = cp − R
-//!
-//! ṁ_out = C_d A_leak p √(γ/(R T)) (2/(γ+1))^((γ+1)/(2(γ−1)))                 choked:
-//!                                                p_ambient/p ≤ (2/(γ+1))^(γ/(γ−1))
-//! ṁ_out = C_d A_leak p √(2γ/((γ−1) R T) (r^(2/γ) − r^((γ+1)/γ)))             subsonic,
-//!                                                r = p_ambient/p < 1
+//! T = U/(m cv)          p = (γ − 1) U/V                   γ = cp/cv, cv = cp − R        ṁ_out: `leak`
 //! ```
 //!
 //! Symbols: m mass, kg; U internal energy, J; T temperature, K; p pressure, Pa; V volume, m³;
-//! h heat transfer coefficient, W/(m² K); A film area, m²; `C_d` discharge coefficient. The orifice
-//! equations are those of one-dimensional isentropic flow (any text on gas dynamics).
+//! h heat transfer coefficient, W/(m² K); A film area, m².
 //!
 //! - Without gas p = 0, and the temperature is reported as that of the film.
 //! - The leak flows both ways. Where p < `p_ambient`, `ṁ_out` is negative: the same equations with inside and

@@ -5,8 +5,6 @@
 //! Without gravity, so that a design has the same reference on the ground and in orbit. The film's
 //! compression fraction is 0. [`crate::statics::settle`] finds each equilibrium.
 
-use core::ops::ControlFlow;
-
 use nalgebra::Vector3;
 
 use super::capsule::film_scene;
@@ -26,7 +24,7 @@ use crate::scene::{
     Contact, Film, GasSupply, HeatTransfer, IntegratorKind, Outputs, Scene, Solver, Stepping,
     Thresholds,
 };
-use crate::statics::{StaticFailure, Tolerances, settle};
+use crate::statics::{Continues, StaticFailure, Tolerances, settle};
 use crate::system::{FilmSystem, PressureLoad};
 
 /// One static equilibrium.
@@ -131,7 +129,7 @@ impl Erected {
     pub fn settle_while(
         &mut self,
         overpressure: f64,
-        continues: &mut dyn FnMut() -> bool,
+        continues: Continues<'_>,
     ) -> Result<StaticState, StaticFailure> {
         let load = PressureLoad::Overpressure(overpressure);
         let film = FilmSystem {
@@ -139,11 +137,8 @@ impl Erected {
             instruction_set: self.instruction_set,
             ..FilmSystem::free(self.model.clone(), load)
         };
-        let observer = &mut |_: &_| {
-            if continues() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-        };
         let equilibrium =
-            settle(&film, &self.positions, self.equilibrium_at, &TOLERANCES, observer)?;
+            settle(&film, &self.positions, self.equilibrium_at, &TOLERANCES, continues)?;
         self.positions.clone_from(&equilibrium.positions);
         // Held nodes are at their stowed positions.
         self.supports.movers.clear();

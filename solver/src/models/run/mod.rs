@@ -285,11 +285,11 @@ impl Run {
 
 /// What the residuals of a whole history show: a gas that does not add up, or a ledger that does not close.
 fn judged(history: &History) -> Option<Failure> {
-    if let Some(time) = audit::first_imbalance(history) {
+    if let Some(time) = audit::first_above(history, "gas_residual", audit::MAX_GAS_RESIDUAL) {
         let place = format!("gas balance: residual above {:e}", audit::MAX_GAS_RESIDUAL);
         return Some(Failure::new(AuditKind::GasBalance, time, place));
     }
-    let time = audit::first_drift(history)?;
+    let time = audit::first_above(history, "ledger_residual", audit::MAX_LEDGER_RESIDUAL)?;
     let place = format!("energy ledger: residual above {}", audit::MAX_LEDGER_RESIDUAL);
     Some(Failure::new(AuditKind::EnergyLedger, time, place))
 }

@@ -77,20 +77,13 @@ mod tests {
     }
 
     #[test]
-    fn a_sine_is_found_with_its_frequency_and_rms() {
+    fn a_sine_about_any_mean_is_found_with_its_frequency_and_rms() {
         for tone in [35.0, 85.0, 290.0] {
-            let (time, vz) = series(500, 1e-3, |t| 3.0 * libm::sin(TAU * tone * t + 0.4));
+            let (time, vz) = series(500, 1e-3, |t| 5.0 + 3.0 * libm::sin(TAU * tone * t + 0.4));
             let (rms, line) = ringing(&time, &vz, 0.05).unwrap();
-            assert!((rms - 3.0 / 2.0_f64.sqrt()).abs() < 0.03, "{rms}");
+            assert!((rms - 29.5_f64.sqrt()).abs() < 0.03, "{rms}");
             assert!((line.unwrap() - tone).abs() <= 5.0, "{tone}: {line:?}");
         }
-    }
-
-    #[test]
-    fn a_constant_velocity_is_not_a_line() {
-        let (time, vz) = series(500, 1e-3, |t| 5.0 + 0.5 * libm::sin(TAU * 60.0 * t));
-        let (_, line) = ringing(&time, &vz, 0.0).unwrap();
-        assert!((line.unwrap() - 60.0).abs() <= 5.0);
     }
 
     #[test]

@@ -97,7 +97,12 @@ pub trait Wide:
     /// Writes eight values to `column[first..]`.
     fn store(self, column: &mut [f64], first: usize);
     /// The values as a plain array.
-    fn lanes(self) -> Lanes;
+    #[inline(always)]
+    fn lanes(self) -> Lanes {
+        let mut lanes = [0.0; WIDTH];
+        self.store(&mut lanes, 0);
+        Lanes(lanes)
+    }
     /// Square root of each lane.
     #[must_use]
     fn sqrt(self) -> Self;

@@ -46,7 +46,7 @@ fn relaxed(rig: &Rig, scene: &Scene, pressure: f64) -> Result<(FilmSimulation, M
         }
         advance(&mut film, target, &Phase::default())?;
         let settled =
-            film.view().kinetic_energy().abs() < share * pressure * film.view().state.volume;
+            film.view().ledger().kinetic.abs() < share * pressure * film.view().state.volume;
         quiet_checks = if settled && target > EARLIEST { quiet_checks + 1 } else { 0 };
     }
     Ok((film, mesh))
@@ -58,9 +58,9 @@ fn compare(film: &FilmView<'_>, mesh: &Mesh, expected: &StaticState) -> Vec<Row>
     let band = |key: &str| number(&format!("deployed_equals_inflated/{key}"));
     let rim = mesh.top_ring.iter().map(|node| film.state.positions.z[*node as usize]).sum::<f64>()
         / mesh.top_ring.len() as f64;
-    let share = film.kinetic_energy() / (expected.overpressure * film.state.volume);
+    let share = film.ledger().kinetic / (expected.overpressure * film.state.volume);
     let passages = film.passages().map_or(f64::NAN, |passages| passages as f64);
-    let strain = film.strain_energy();
+    let strain = film.ledger().strain;
     let row = |what: &str, value: f64, expected: f64, key: &str| {
         Row::new(&name(what), value, expected, band(key))
     };

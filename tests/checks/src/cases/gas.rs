@@ -271,7 +271,7 @@ pub fn injected_piston(rig: &Rig) -> Outcome {
         Row::refined("x at 50 ms, m", [coarse, middle, fine], expected, band, Some(least)),
         Row::new(
             "kinetic energy over enthalpy in",
-            finest.view().kinetic_energy() / enthalpy,
+            finest.view().ledger().kinetic / enthalpy,
             number("injected_piston/kinetic_share_of_enthalpy"),
             number("injected_piston/offset_band"),
         ),

@@ -61,7 +61,7 @@ pub fn rigid_rotation(rig: &Rig) -> Outcome {
                 "numerical dissipation of this rotation over E t h^2",
                 stepped.numerical_dissipation.abs() / energy,
             ),
-            ("strain energy over E t h^2", film.view().strain_energy() / energy),
+            ("strain energy over E t h^2", film.view().ledger().strain / energy),
         ],
     ))
 }

@@ -1,8 +1,6 @@
 //! What the cases share: supports and inflow, advancing film, and the deliberate fault that a test
 //! may inject.
 
-use std::ops::ControlFlow;
-
 use billow_solver::geometry::shell::Shell;
 use billow_solver::integrators::FilmSimulation;
 use billow_solver::integrators::StoredIntegrator;
@@ -116,8 +114,7 @@ pub fn equilibrium(
     scene: &FilmScene,
     known: Option<(&StaticSolution, f64)>,
 ) -> Result<StaticSolution> {
-    let observer = &mut |_: &_| ControlFlow::Continue(());
-    Ok(statics::solve_from(&rig.on_instruction_set(scene), known, observer)?)
+    Ok(statics::solve(&rig.on_instruction_set(scene), known, &mut || true)?)
 }
 
 /// The static equilibrium of film under an overpressure (Pa).

@@ -5,7 +5,6 @@
 //! statics:                    residual force over the load; steps are those of Newton's method
 //! ```
 
-use core::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use billow_solver::models;
@@ -74,8 +73,7 @@ fn answer(rig: &Rig, scene: &StabilityScene, method: Method, values: &Values) ->
         }
         Prepared::Statics(film, positions) => {
             let film = FilmSystem { instruction_set: rig.instruction_set, ..*film };
-            let observer = &mut |_: &_| ControlFlow::Continue(());
-            let settled = settle(&film, &positions, None, &Tolerances::default(), observer);
+            let settled = settle(&film, &positions, None, &Tolerances::default(), &mut || true);
             let (cell, steps, residual) = match settled {
                 Ok(found) => (Cell::ended(Status::Done, ""), found.iterations, found.residual),
                 Err(failure) => {

@@ -25,7 +25,7 @@ use crate::output::measures::{NoReference, StaticShape, design_overpressure};
 use crate::platform::simd::InstructionSet;
 use crate::scene::Scene;
 use crate::scene::error::SceneError;
-use crate::statics::{StaticFailure, StaticFailureKind};
+use crate::statics::{Continues, StaticFailure, StaticFailureKind};
 
 mod interpolation;
 
@@ -252,9 +252,6 @@ impl Ladder {
         Ok(self.capsule.insert(capsule))
     }
 }
-
-/// Called at every iteration of a search; `false` ends it.
-type Continues<'a> = &'a mut dyn FnMut() -> bool;
 
 /// The level from whose positions the search of a level starts; `None` for the erected shape.
 fn start_of(level: Level) -> Option<Level> {

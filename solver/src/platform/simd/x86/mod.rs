@@ -1,7 +1,7 @@
 //! Eight values in the registers of AVX2 and of AVX-512.
 //!
 //! Every operation is one instruction (two on AVX2) and gives the bits of eight scalar operations.
-//! Plain arrays ([`Lanes`]) leave the choice of instructions to the compiler, which turns some long
+//! Plain arrays ([`Lanes`](super::Lanes)) leave the choice of instructions to the compiler, which turns some long
 //! kernels into scalar code; these types do not.
 //!
 //! # Safety
@@ -16,7 +16,7 @@
 use core::arch::x86_64::*;
 use core::ops::{Add, Mul, Neg, Sub};
 
-use super::{Lanes, NodeSum, Vectors, WIDTH, Wide};
+use super::{NodeSum, Vectors, WIDTH, Wide};
 
 mod transpose;
 
@@ -116,13 +116,6 @@ impl Wide for Avx2 {
     }
 
     #[inline(always)]
-    fn lanes(self) -> Lanes {
-        let mut lanes = [0.0; WIDTH];
-        self.store(&mut lanes, 0);
-        Lanes(lanes)
-    }
-
-    #[inline(always)]
     fn sqrt(self) -> Self {
         // SAFETY: AVX2 is present (module invariant).
         unsafe { Self(_mm256_sqrt_pd(self.0), _mm256_sqrt_pd(self.1)) }
@@ -217,13 +210,6 @@ impl Wide for Avx512 {
         // SAFETY: AVX-512 is present (module invariant); the pointer is to a slice of eight values,
         // borrowed mutably.
         unsafe { _mm512_storeu_pd(column[first..first + WIDTH].as_mut_ptr(), self.0) }
-    }
-
-    #[inline(always)]
-    fn lanes(self) -> Lanes {
-        let mut lanes = [0.0; WIDTH];
-        self.store(&mut lanes, 0);
-        Lanes(lanes)
     }
 
     #[inline(always)]
