@@ -81,7 +81,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         }
         runs.push(capsule.row());
     }
-    for rows in [vec![machine(set)], stages, runs] {
+    for rows in [stages, runs] {
         print(&rows, args.options.format(), out)?;
     }
     Ok(())
@@ -93,22 +93,6 @@ fn print(rows: &[Row], format: Format, out: &mut dyn Write) -> Result<()> {
     let cells = |row: &Row| row.iter().map(|(_, value)| value.clone()).collect();
     print_rows(&columns, &rows.iter().map(cells).collect::<Vec<_>>(), format, out)?;
     writeln!(out).map_err(output_error)
-}
-
-/// What the machine and the program are.
-fn machine(set: InstructionSet) -> Row {
-    let cores = std::thread::available_parallelism().ok().map(std::num::NonZero::get);
-    let bytes = Disk.read(Path::new("/proc/cpuinfo")).unwrap_or_default();
-    let text = String::from_utf8_lossy(&bytes);
-    let model = text.lines().find(|line| line.starts_with("model name"));
-    let cpu = model.and_then(|line| Some(line.split_once(':')?.1.trim()));
-    vec![
-        ("cpu", cpu.into()),
-        ("cores", cores.into()),
-        ("instruction_set", set.name().into()),
-        ("program_version", provenance::PROGRAM_VERSION.into()),
-        ("commit", provenance::COMMIT.into()),
-    ]
 }
 
 /// The running capsule of a mesh, with the cost so far.
@@ -191,6 +175,8 @@ impl Capsule {
             ("ledger_residual", audit.ledger_residual.into()),
             ("passages", audit.passages.into()),
             ("peak_memory", memory::peak_resident().into()),
+            ("instruction_set", self.film.film.view().system.instruction_set.name().into()),
+            ("commit", provenance::COMMIT.into()),
         ]
     }
 
@@ -212,8 +198,6 @@ impl Capsule {
                 *least = least.min(self.cost(total.as_secs_f64(), steps));
             }
         }
-        // One sample and one frame per sample interval, divided by the steps between.
-        let output = self.cost(self.output(), 1) * step / self.timeline.sample_interval;
         let mut row: Row = vec![
             ("subdivisions", self.subdivisions.into()),
             ("state", name.into()),
@@ -221,8 +205,7 @@ impl Capsule {
         ];
         row.extend(Stage::ALL.iter().zip(least).map(|(stage, cost)| (stage.name(), cost.into())));
         row.extend([
-            ("output", output.into()),
-            ("whole", (whole + output).into()),
+            ("whole", whole.into()),
             ("steps_per_second", (1.0 / step).into()),
         ]);
         Ok(row)
@@ -236,20 +219,6 @@ impl Capsule {
         film.advance_timed(now + MAX_TIME, &phase, &mut steps, stopwatch)
             .map_err(|failure| Error::JobsFailed(stopped(&failure)))?;
         Ok(film)
-    }
-
-    /// Shortest time of a sample and a frame, s.
-    fn output(&self) -> f64 {
-        let time = self.film.view().state.time;
-        let phase = self.timeline.phase(time, time + self.timeline.sample_interval);
-        let times = (0..REPEATS).map(|_| {
-            let (start, mut tracked) = (Instant::now(), Vec::new());
-            let sample = self.film.sample(&phase);
-            self.film.follow(&mut tracked);
-            std::hint::black_box((sample, &tracked, self.film.frame()));
-            start.elapsed().as_secs_f64()
-        });
-        times.fold(f64::INFINITY, f64::min)
     }
 }
 

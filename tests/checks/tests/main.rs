@@ -2,10 +2,8 @@
 
 #![allow(clippy::disallowed_methods, reason = "tests read and damage files directly")]
 
-mod bench;
-mod converge;
+mod commands;
 mod fault_injection;
-mod pareto;
 mod physics_version;
 mod stability;
 mod support;

@@ -31,7 +31,6 @@ mod contact_stack;
 mod contact_tube;
 mod damping;
 pub(crate) mod drum;
-mod friction_adhesion;
 pub(crate) mod gas;
 mod integrators;
 mod invariants;
@@ -119,8 +118,8 @@ pub const CASES: &[Case] = &[
     quick("films_at_50_m_s", contact_impacts::films_at_50_m_s),
     quick("squeezed_bag", |rig| contact_impacts::squeezed_bag(rig, &[0.0])),
     long("squeezed_bag_stiff", |rig| contact_impacts::squeezed_bag(rig, &[0.1, 1.0])),
-    quick("friction", friction_adhesion::friction),
-    quick("adhesion", friction_adhesion::adhesion),
+    quick("friction", contact_impacts::friction),
+    quick("adhesion", contact_impacts::adhesion),
     quick("capsule_every_step", |rig| contact_capsule::every_step(rig, 2)),
     long("capsule_every_step_fine", |rig| contact_capsule::every_step(rig, 4)),
     quick("capsule_deployed", |rig| contact_capsule::deployed(rig, 5)),

@@ -1,16 +1,4 @@
-//! A map file: which scenes, along which axes, and what is expected.
-//!
-//! ```json
-//! {"maps": [{"name": "step", "description": "what is asked", "scene": "sheet",
-//!            "axes": [["step", [0.5, 1.5]], ["damping", [0, 0.1]]], "values": {"sliver": 1}, "methods": ["explicit"],
-//!            "border": 1e-3, "theory": 0.01,
-//!            "expect": [{"methods": ["explicit"], "where": {"step": [1.1, 2]}, "status": ["unstable"], "why": "…"}]}]}
-//! ```
-//!
-//! Without `methods`, a map or a rule holds for every method that can run the scene; `film` is every integrator. `where`
-//! has the smallest and the largest value of parameters. The first rule that holds for a cell decides; without one the
-//! run is expected to be `done`. `border` is the relative width at which the search along the first axis ends, `theory`
-//! the largest relative difference of the border of `explicit` from 2/ω.
+//! A map file: which scenes, along which axes, and what is expected. docs/guide/validate.md has its keys and an example.
 
 use std::collections::BTreeMap;
 use std::path::Path;
