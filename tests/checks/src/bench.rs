@@ -204,10 +204,7 @@ impl Capsule {
             ("time", now.into()),
         ];
         row.extend(Stage::ALL.iter().zip(least).map(|(stage, cost)| (stage.name(), cost.into())));
-        row.extend([
-            ("whole", whole.into()),
-            ("steps_per_second", (1.0 / step).into()),
-        ]);
+        row.extend([("whole", whole.into()), ("steps_per_second", (1.0 / step).into())]);
         Ok(row)
     }
 

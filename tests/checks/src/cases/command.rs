@@ -1,7 +1,6 @@
 //! `billow-checks validate`: runs the reference cases and compares their errors with their tolerances.
 
 use std::io::Write;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use billow_study::cli::Format;
 use billow_study::cli::options::ThreadsOption;
@@ -38,16 +37,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         let names: Vec<&str> = skipped.iter().map(|case| case.name).collect();
         args.options.note(&format!("skipped by --quick: {}", names.join(", ")));
     }
-    let ended = AtomicUsize::new(0);
     let judged = run_all(&pool, &cases, &rig, &|judged| {
-        let number = ended.fetch_add(1, Ordering::Relaxed) + 1;
         let verdict = if judged.pass() { "in tolerance" } else { "OUT OF TOLERANCE" };
-        args.options.note(&format!(
-            "{number}/{} {}: {verdict}, {:.1} s",
-            cases.len(),
-            judged.name,
-            judged.seconds
-        ));
+        args.options.note(&format!("{}: {verdict}, {:.1} s", judged.name, judged.seconds));
     });
     print(&judged, args.options.format(), out)?;
     verdict(&judged)

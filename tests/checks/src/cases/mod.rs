@@ -25,10 +25,9 @@ mod row;
 
 pub mod contact_capsule;
 mod contact_impacts;
+mod contact_plates;
 mod contact_relaxed;
 mod contact_rig;
-mod contact_stack;
-mod contact_tube;
 mod damping;
 pub(crate) mod drum;
 pub(crate) mod gas;
@@ -113,8 +112,8 @@ pub const CASES: &[Case] = &[
     long("end_state", static_end_state::aligned),
     long("end_state_pattern", static_end_state::pattern),
     quick("end_state_polygon", contact_relaxed::end_state_polygon),
-    quick("stack", contact_stack::stack_of_sheets),
-    quick("tube_between_plates", contact_tube::tube_between_plates),
+    quick("stack", contact_plates::stack_of_sheets),
+    quick("tube_between_plates", contact_plates::tube_between_plates),
     quick("films_at_50_m_s", contact_impacts::films_at_50_m_s),
     quick("squeezed_bag", |rig| contact_impacts::squeezed_bag(rig, &[0.0])),
     long("squeezed_bag_stiff", |rig| contact_impacts::squeezed_bag(rig, &[0.1, 1.0])),

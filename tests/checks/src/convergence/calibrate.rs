@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use billow_solver::scene::ModelKind;
 
-use super::limit::limit;
+use super::fit::limit;
 use super::regression::{Point, regression};
 use super::runs::{MeshRun, SceneRuns};
 use billow_study::accuracy::features::{FEATURE_NAMES, FEATURES, are_equal};

@@ -13,8 +13,7 @@ use billow_study::platform::error::{Error, Result};
 use billow_study::platform::files::{Disk, disk_error, write_output};
 
 use super::calibrate::calibrate;
-use super::fit::fit;
-use super::limit::levels;
+use super::fit::{fit, levels};
 use super::runs::{SceneRuns, by_scene};
 use crate::output::Options;
 

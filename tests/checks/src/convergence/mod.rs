@@ -3,7 +3,6 @@
 mod calibrate;
 pub mod command;
 mod fit;
-mod limit;
 mod regression;
 mod runs;
 

@@ -4,7 +4,7 @@ use billow_solver::scene::paper::capsule;
 use billow_solver::scene::{ModelKind, Stepping};
 
 use super::calibrate::calibrate;
-use super::limit::levels;
+use super::fit::levels;
 use super::runs::{MeshRun, SceneRuns};
 use billow_study::accuracy::features::FEATURE_NAMES;
 use billow_study::accuracy::{Features, Method};

@@ -1,17 +1,80 @@
-//! The scenes: a plate on gas, by film and by the model piston; film that vibrates about its equilibrium.
+//! `billow-checks pareto`: work-precision diagrams of scenes with an exact answer.
+//!
+//! ```text
+//! seconds = wall time on one thread over the simulated time
+//! ```
+//! The scenes run the code of the cases of the same names at several meshes and steps. Relaxation and set-up before
+//! the motion do not count.
 
+use std::io::Write;
+use std::path::PathBuf;
 use std::time::Instant;
 
 use billow_solver::integrators::{FilmSimulation, entry};
 use billow_solver::output::events::EventKind;
 use billow_solver::scene::{IntegratorKind, Stepping};
 use billow_study::analysis::work_precision::{
-    Configuration, Ending, Outcome, Quantity, Run, SceneRuns,
+    Configuration, Cost, Diagram, Ending, Outcome, Quantity, Run, SceneRuns,
 };
+use billow_study::chart::work_precision as pictures;
+use billow_study::cli::chart::work_precision::print_front;
+use billow_study::cli::picture::{self, Picture};
 use billow_study::input::value::Value;
+use billow_study::platform::error::{self, Error};
+use billow_study::platform::files::{Disk, Files, disk_error};
 
 use crate::cases::reference::{number, rows};
 use crate::cases::{Result, Rig, drum, gas, sphere_motion};
+use crate::output::{Options, chosen};
+
+/// A scene: its name, and the function that runs it at every mesh and step, with every integrator that can.
+type Scene = (&'static str, fn(&Rig) -> Result<SceneRuns>);
+
+/// Every scene.
+const SCENES: [Scene; 3] = [
+    ("injected_piston", injected_piston),
+    ("breathing_sphere", breathing_sphere),
+    ("stretched_disc", stretched_disc),
+];
+
+/// Arguments of `billow-checks pareto`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Folder of the pictures.
+    #[arg(long, value_name = "DIR", default_value = "results/exact")]
+    out: PathBuf,
+    /// Only these scenes, comma-separated.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    scenes: Vec<String>,
+    #[command(flatten)]
+    options: Options,
+}
+
+/// Runs `billow-checks pareto`: runs the scenes on one thread, prints the front, in CSV and JSON every configuration,
+/// and draws the pictures over element-steps and over seconds.
+pub fn run(args: &Args, out: &mut dyn Write) -> error::Result<()> {
+    let rig = Rig::selected()?;
+    let mut diagrams = Vec::new();
+    for (name, body) in chosen("--scenes", &args.scenes, &SCENES, |(name, _)| name)? {
+        args.options.note(&format!("runs the scene {name}"));
+        let runs =
+            body(&rig).map_err(|problem| Error::JobsFailed(format!("scene {name}: {problem}")))?;
+        diagrams.push(Diagram::of(runs));
+    }
+    let folder = args.out.join("charts");
+    Disk.create_folder(&folder).map_err(|error| disk_error(&folder, &error))?;
+    for (cost, ending) in [(Cost::Work, ""), (Cost::Seconds, "_seconds")] {
+        let scenes =
+            diagrams.iter().map(|diagram| (&*diagram.name, pictures::scene(diagram, cost)));
+        for (name, svg) in scenes.chain([("exact", pictures::overview(&diagrams, cost))]) {
+            for format in Picture::ALL {
+                let name = format!("pareto_{name}{ending}.{}", format.extension());
+                picture::write(&folder.join(name), &svg)?;
+            }
+        }
+    }
+    print_front(&diagrams, Cost::Work, args.options.format(), out)
+}
 
 /// CFL numbers of the injected piston: each halves the step.
 const PISTON_CFL: [f64; 7] = [0.64, 0.32, 0.16, 0.08, 0.04, 0.02, 0.01];
@@ -95,7 +158,7 @@ fn timed<T>(body: impl FnOnce() -> Result<T>) -> Result<(T, f64)> {
 
 /// A plate driven by a constant inflow into vacuum, by film and by the model piston. Its start is exact to 12 digits,
 /// so errors end near 1e-12.
-pub(super) fn injected_piston(rig: &Rig) -> Result<SceneRuns> {
+fn injected_piston(rig: &Rig) -> Result<SceneRuns> {
     let [end, start] = ["end", "start"].map(|key| number(&format!("injected_piston/{key}")));
     let exact = gas::injected_exact(end);
     let quantities = vec![quantity("x".to_owned(), "m", "position at 50 ms".to_owned(), exact)];
@@ -166,7 +229,7 @@ fn vibrations(meshes: &[u32], scene: usize) -> Vec<Vibration> {
 }
 
 /// A sphere on adiabatic gas about its equilibrium.
-pub(super) fn breathing_sphere(rig: &Rig) -> Result<SceneRuns> {
+fn breathing_sphere(rig: &Rig) -> Result<SceneRuns> {
     let rows = rows("breathing_sphere");
     let of_row = |row: &Vec<f64>| {
         let meaning = format!("frequency at {} Pa", row[0]);
@@ -193,7 +256,7 @@ pub(super) fn breathing_sphere(rig: &Rig) -> Result<SceneRuns> {
 }
 
 /// A drum: a disc under tension from its rim.
-pub(super) fn stretched_disc(rig: &Rig) -> Result<SceneRuns> {
+fn stretched_disc(rig: &Rig) -> Result<SceneRuns> {
     let modes = drum::drum_modes();
     let of_mode = |mode: &drum::DrumMode| {
         let meaning = format!("frequency with {} nodal diameters", mode.diameters);
