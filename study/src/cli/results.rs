@@ -13,7 +13,7 @@ use crate::platform::files::{self, Disk, Files};
 use crate::store::journal::Fault;
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
-use crate::store::table::{Column, Table};
+use crate::store::table::{Column, ColumnCells, Table};
 use crate::study::{Study, StudyKey};
 
 /// Journal lines that are named, at most.
@@ -277,6 +277,6 @@ fn constant(name: &str, key: StudyKey, rows: usize, units: &DisplayUnits) -> Col
         unit: unit.to_owned(),
         shown: units.of(&key.name, unit),
         meaning: key.key.doc.to_owned(),
-        cells: vec![key.value; rows],
+        cells: ColumnCells::Same(key.value, rows),
     }
 }

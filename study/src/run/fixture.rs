@@ -21,6 +21,7 @@ use crate::job::executor::{Executor, Outcome};
 use crate::job::limits::JobLimits;
 use crate::job::point::{Infeasible, Point, Searched};
 use crate::job::{self, Job, JobId};
+use crate::platform::files::Disk;
 use crate::platform::stop::Stop;
 use crate::run::runner::{CHECKPOINT_INTERVAL, Run};
 use crate::run::selection::Selection;
@@ -120,6 +121,15 @@ pub fn generation(jobs: u32) -> Generation {
         })
         .collect();
     Generation { number: 0, points }
+}
+
+/// The table of a run of such a plan. The folder holds it as a file.
+pub fn table(root: &Path, jobs: u32) -> Table {
+    let results = Results::new(&Disk, root);
+    let records = results.journal().unwrap().records;
+    let table = Table::build(&generation(jobs).points, &records, &|_| String::new());
+    assert_eq!(results.holds_table(&table).unwrap(), Some(true));
+    table
 }
 
 /// A folder in memory where the machine has one: the tests check the order of operations.

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::analysis::fixture;
+use crate::store::table::ColumnCells;
 
 /// Two flows, two residual masses, one combination infeasible, one job failed.
 fn table() -> Table {
@@ -46,7 +47,7 @@ fn the_hardest_job_can_be_trusted_where_any_can() {
     assert_eq!((most.job.as_str(), most.trusted), ("d", true), "job b is damped");
 
     let damped = table.columns.iter_mut().find(|column| column.name == "numerically_damped");
-    damped.unwrap().cells.fill(Value::Bool(true));
+    damped.unwrap().cells = ColumnCells::Same(Value::Bool(true), 8);
     let answer = Answer::of_jobs(&table, &[]);
     let most = answer.most_energy.unwrap();
     assert_eq!((most.job.as_str(), most.trusted), ("b", false), "no job can be trusted");
@@ -88,7 +89,7 @@ fn medians(ranking: &Ranking, measure: usize) -> (Vec<(String, f64)>, Option<Str
 fn medians_are_taken_over_sets_in_which_every_value_is_trusted_and_done() {
     let mut table = table();
     let damped = table.columns.iter_mut().find(|c| c.name == "numerically_damped").unwrap();
-    damped.cells.fill(Value::Bool(false));
+    damped.cells = ColumnCells::Same(Value::Bool(false), 8);
     let flow = compared(&table, "flow").unwrap();
     let (one, two) = ("1".to_owned(), "2".to_owned());
     // Mass 2 has no job at flow 1, and the failed job at mass 3 has no measure.
@@ -168,7 +169,7 @@ fn a_set_of_jobs_counts_once_and_a_set_of_one_job_not_at_all() {
         ("rapid", 2.0, 3.0, 20.0),
     ]);
     let jobs = ["x", "y", "x", "y"];
-    table.columns[0].cells = jobs.map(|job| Value::Text(job.to_owned())).to_vec();
+    table.columns[0].cells = jobs.map(|job| Value::Text(job.to_owned())).to_vec().into();
     assert_eq!(compared(&table, "strategy").unwrap().measures[0].sets, 1);
     assert_eq!(
         compared(&table, "mass").unwrap_err(),

@@ -107,7 +107,8 @@ impl Comparison<'_> {
         let shown = measure.column.shown.of_difference();
         columns.push(Column { shown, ..difference });
         let ratio = of("ratio", Compared::ratio);
-        columns.push(Column::plain(&ratio.name, CellType::Number, ratio.cells));
+        let plain = Column::plain(&ratio.name, CellType::Number, Vec::new());
+        columns.push(Column { cells: ratio.cells, ..plain });
         let better = all.iter().map(|pair| Value::Text(pair.better.name().to_owned()));
         columns.push(Column::plain(&format!("{name}_better"), CellType::Text, better.collect()));
         columns

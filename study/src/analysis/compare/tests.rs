@@ -104,7 +104,7 @@ fn two_pairs_of_the_same_jobs_count_once_and_one_job_is_no_pair() {
         (2, 3.0, "done", Some(5.0)),
     ]);
     let jobs = ["x", "y", "x", "y", "z", "z"];
-    table.columns[0].cells = jobs.map(|job| Value::Text(job.to_owned())).to_vec();
+    table.columns[0].cells = jobs.map(|job| Value::Text(job.to_owned())).to_vec().into();
     assert_eq!(betters(&table, 1, 0.0), [Better::Base, Better::Base, Better::SameJob]);
     let sets = Sets::new(&table, &all(&table), "a", &[]);
     let (pairs, _) = pairs(&table, &sets, "a", &Value::Integer(1));

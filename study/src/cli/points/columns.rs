@@ -3,7 +3,6 @@
 use super::{DEPLOYED, RANGE, RUNS};
 use crate::accuracy::is_error_column;
 use crate::analysis::replicates::{Condensed, Runs, integer, proportion_columns};
-use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::proportion::Proportion;
 use crate::job::row::{CellType, DerivedColumn, SAME_JOB_AS};
@@ -81,12 +80,5 @@ fn common(column: &Column, rows: &[usize]) -> Value {
 }
 
 fn column(name: &str, cell_type: CellType, meaning: &str, cells: Vec<Value>) -> Column {
-    Column {
-        name: name.to_owned(),
-        cell_type,
-        unit: "1".to_owned(),
-        shown: DisplayUnit::si("1"),
-        meaning: meaning.to_owned(),
-        cells,
-    }
+    Column::new(name, (cell_type, "1"), meaning, cells)
 }

@@ -25,27 +25,38 @@ pub const SAME_JOB_AS: &str = "same_job_as";
 pub const SAME_JOB_AS_MEANING: &str =
     "other points of the study that are the same job: the parameters in which they differ";
 
-/// The cells of one row, in the order of [`COLUMNS`].
+/// The cells of one row. A study has many rows, and a third of their cells are null: those take no memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cells {
     status: Status,
+    /// Which cells are not null: bit k is that of column k of [`COLUMNS`].
+    present: u128,
+    /// The cells that are not null, in the order of their columns.
     values: Vec<Value>,
 }
+
+const _: () = assert!(COLUMNS.len() <= u128::BITS as usize, "a bit for every column");
 
 impl Cells {
     /// A row with this status; every other cell is null.
     pub fn new(status: Status) -> Self {
-        let mut values = vec![Value::Null; COLUMNS.len()];
-        values[ColumnId::Status.index()] = Value::Text(status.name().to_owned());
-        Self { status, values }
+        Self::with(status, [(ColumnId::Status, status.name().into())])
     }
 
     /// The row of a job that ended; `None` for a cancelled job, of which nothing is stored.
     /// `content_hash` is the hash of history and frames of a job that ran.
     pub fn of(job: &Job, outcome: &Outcome, content_hash: Option<&str>) -> Option<Self> {
         let end = JobEnd::new(job, outcome, content_hash)?;
-        let values = COLUMNS.iter().map(|column| (column.take)(&end)).collect();
-        Some(Self { status: end.status, values })
+        Some(Self::with(end.status, COLUMNS.iter().map(|column| (column.id, (column.take)(&end)))))
+    }
+
+    fn with(status: Status, cells: impl IntoIterator<Item = (ColumnId, Value)>) -> Self {
+        let mut row = Self { status, present: 0, values: Vec::new() };
+        for (column, value) in cells {
+            row.put(column, value);
+        }
+        row.values.shrink_to_fit();
+        row
     }
 
     /// The row of a point without a fold pattern.
@@ -60,7 +71,26 @@ impl Cells {
 
     /// The value of that column.
     pub fn get(&self, column: ColumnId) -> &Value {
-        &self.values[column.index()]
+        const NULL: &Value = &Value::Null;
+        let is_present = self.present >> column.index() & 1 == 1;
+        if is_present { &self.values[self.place(column)] } else { NULL }
+    }
+
+    /// Number of cells before that column which are not null.
+    fn place(&self, column: ColumnId) -> usize {
+        (self.present & ((1 << column.index()) - 1)).count_ones() as usize
+    }
+
+    fn put(&mut self, column: ColumnId, value: Value) {
+        let (place, bit) = (self.place(column), 1 << column.index());
+        if self.present & bit != 0 {
+            self.values.remove(place);
+            self.present &= !bit;
+        }
+        if value != Value::Null {
+            self.values.insert(place, value);
+            self.present |= bit;
+        }
     }
 
     /// The number of that column; `None` for a cell without one.
@@ -91,7 +121,7 @@ impl Cells {
     /// Sets a cell. The status is set by [`Self::new`] alone.
     pub fn set(&mut self, column: ColumnId, value: impl Into<Value>) {
         debug_assert_ne!(column, ColumnId::Status, "Cells::new sets the status");
-        self.values[column.index()] = value.into();
+        self.put(column, value.into());
     }
 
     /// How the job ended.
@@ -101,7 +131,7 @@ impl Cells {
 
     /// Columns and their values.
     pub fn iter(&self) -> impl Iterator<Item = (&'static RowColumn, &Value)> {
-        COLUMNS.iter().zip(&self.values)
+        COLUMNS.iter().map(|column| (column, self.get(column.id)))
     }
 }
 

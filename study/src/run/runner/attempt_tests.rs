@@ -137,7 +137,7 @@ fn two_deaths_alone_at_last_put_a_job_in_quarantine_until_it_is_asked_for() {
     assert_eq!((summary.counts.of(Status::Done), summary.ran), (3, 3));
     let note = &notes[0];
     assert!(note.contains("two attempts") && note.contains("--again crashed"), "{note}");
-    let table = Results::new(&Disk, folder.path()).read_table().unwrap();
+    let table = fixture::table(folder.path(), JOBS);
     let cell = |name: &str| table.column(name).unwrap().cells[3].to_string();
     assert_eq!(cell("status"), "crashed");
     assert!(

@@ -18,9 +18,8 @@ use crate::platform::error::Error;
 use crate::platform::files::failing::FailingFiles;
 use crate::platform::files::{Disk, Files};
 use crate::run::event::Silent;
-use crate::run::fixture::{self, Scripted, folder, ran};
+use crate::run::fixture::{self, Scripted, folder, ran, table};
 use crate::store::history_file;
-use crate::store::table::Table;
 
 struct EventLog(Vec<Event>);
 
@@ -62,10 +61,6 @@ fn run_on(
 
 fn run_quiet(root: &Path, jobs: u32, threads: usize, executor: &dyn Executor) -> Summary {
     run_on(&Disk, root, jobs, threads, executor, &mut Silent).unwrap()
-}
-
-fn table(root: &Path) -> Table {
-    Results::new(&Disk, root).read_table().unwrap()
 }
 
 /// Every file under a folder: bytes and time of last change.
@@ -139,11 +134,11 @@ fn a_larger_study_runs_only_its_new_jobs_and_a_smaller_one_runs_nothing() {
     let executor = Scripted::new(ran);
     run_quiet(folder.path(), 9, 1, &executor);
     assert_eq!(executed(&executor), 5);
-    assert_eq!(table(folder.path()).rows(), 9);
+    assert_eq!(table(folder.path(), 9).rows(), 9);
     let executor = Scripted::new(ran);
     run_quiet(folder.path(), 4, 1, &executor);
     assert_eq!(executed(&executor), 0);
-    assert_eq!(table(folder.path()).rows(), 4);
+    assert_eq!(table(folder.path(), 4).rows(), 4);
 }
 
 #[test]
@@ -159,7 +154,7 @@ fn a_panic_and_a_refused_scene_are_rows_with_a_reason() {
     let folder = folder();
     let summary = run_quiet(folder.path(), 6, 2, &Scripted::new(script));
     assert_eq!(summary.counts.failed(), 2);
-    let table = table(folder.path());
+    let table = table(folder.path(), 6);
     let cell = |name: &str, row: usize| table.column(name).unwrap().cells[row].to_string();
     let status: Vec<String> = (0..6).map(|row| cell("status", row)).collect();
     assert_eq!(status, ["done", "panicked", "infeasible", "invalid", "done", "done"]);
@@ -240,7 +235,7 @@ fn a_missing_or_damaged_history_runs_again_with_a_note() {
 fn a_torn_journal_line_loses_only_its_job() {
     let folder = folder();
     run_quiet(folder.path(), 5, 1, &Scripted::new(ran));
-    let before = table(folder.path());
+    let before = table(folder.path(), 5);
     let path = folder.path().join("journal").join("000001.jsonl");
     let bytes = fs::read(&path).unwrap();
     fs::write(&path, &bytes[..bytes.len() - 9]).unwrap();
@@ -249,7 +244,7 @@ fn a_torn_journal_line_loses_only_its_job() {
     run_on(&Disk, folder.path(), 5, 1, &executor, &mut log).unwrap();
     assert_eq!(executed(&executor), 1);
     assert!(log.notes()[0].contains("line 6: torn"), "{:?}", log.notes());
-    assert_eq!(table(folder.path()), before);
+    assert_eq!(table(folder.path(), 5), before);
 }
 
 #[test]
@@ -270,7 +265,7 @@ fn a_resumed_study_plans_its_generations_again() {
         let study = fixture::run(Results::new(&Disk, folder.path()), &planner, &executor);
         run(&study, &mut Silent).unwrap();
         assert_eq!(executed(&executor), expected);
-        assert_eq!(table(folder.path()).rows(), 6);
+        assert_eq!(table(folder.path(), 6).rows(), 6);
     }
 }
 
@@ -344,5 +339,5 @@ fn a_thousand_tiny_jobs_cost_less_than_a_millisecond_each_besides_writing() {
     let writing = (cpu() - start) / 999.0;
     println!("storing thread: {:.2} ms a job, {:.2} ms of it HDF5", 1e3 * all, 1e3 * writing);
     assert!(all - writing < 1e-3, "{all} s a job, {writing} s of it HDF5");
-    assert_eq!(table(folder.path()).column("steps").unwrap().cells[999], Value::Integer(100));
+    assert_eq!(table(folder.path(), 1000).column("steps").unwrap().cells[999], Value::Integer(100));
 }

@@ -84,14 +84,14 @@ pub fn write(stored: &Stored<'_>, columns: &[String], path: &Path) -> Result<Wri
 
 /// The rows of done jobs.
 fn done(stored: &Stored<'_>, table: &Table) -> Result<Vec<(usize, JobId)>> {
-    let ids = table.column("job").map_or(&[][..], |column| &column.cells);
     let of_row = |(row, id): (usize, &Value)| match id {
         Value::Text(id) if table.status(row) == Some(Status::Done) => {
             Some((row, JobId::from_digits(id)?))
         }
         _ => None,
     };
-    let done: Vec<(usize, JobId)> = ids.iter().enumerate().filter_map(of_row).collect();
+    let ids = table.column("job").into_iter().flat_map(|column| column.cells.iter());
+    let done: Vec<(usize, JobId)> = ids.enumerate().filter_map(of_row).collect();
     if done.is_empty() {
         let path = stored.results.root().to_owned();
         let problem = "no job is done, so there is no history to export\n  next: run `billow run` of the study";

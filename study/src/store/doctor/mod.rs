@@ -31,6 +31,9 @@ const REPAIR: &str = "run `billow run` of its study, or `billow doctor --repair`
 /// What to do about what only a repair changes.
 const REPAIR_ONLY: &str = "run `billow doctor --repair`";
 
+/// What is wrong with a table that was changed, or is older than its journal.
+const OTHER_TABLE: &str = "not the table of plan and journal";
+
 /// Something found.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Finding {
@@ -240,39 +243,23 @@ fn note_journal(results: &Results<'_>, journal: &Journal, health: &mut Health) {
 /// Compares the summary table with plan and journal.
 fn check_table(stored: &Stored<'_>, health: &mut Health) {
     let path = stored.results.table_path();
-    let write_again =
-        "run `billow run` of its study, or `billow doctor --repair`: it writes the table again";
-    let table = match stored.results.read_table() {
-        Ok(table) => table,
-        Err(_) if !path.exists() => {
+    match stored.results.holds_table(&stored.table()) {
+        Err(error) => health.error(&path, &error),
+        Ok(None) if health.running => {}
+        Ok(None) => {
             let next = "nothing: `billow table` reads the journal; `billow run` of its study writes the table";
-            if !health.running {
-                health.note(&path, "no table yet", next);
-            }
-            return;
+            health.note(&path, "no table yet", next);
         }
-        Err(Error::Disk { path, problem }) => {
-            let problem = problem.split('\n').next().unwrap_or_default();
-            let other = problem.contains("this program reads version");
-            let next = if other { "use the billow that wrote it" } else { write_again };
-            return health.fault(&path, problem, next);
+        Ok(Some(true)) => {}
+        Ok(Some(false)) if is_of_other_physics(stored) => {
+            let next = "nothing; `billow run` of its study computes its jobs again";
+            health.note(&path, "rows of another physics version, which are not checked", next);
         }
-        Err(other) => return health.error(&path, &other),
-    };
-    if is_of_other_physics(stored) {
-        let next = "nothing; `billow run` of its study computes its jobs again";
-        health.note(&path, "rows of another physics version", next);
-        return;
-    }
-    let different = stored.table().different_rows(&table);
-    if different == 0 {
-        return;
-    }
-    let problem = format!("differs from the journal in {different} rows");
-    if health.running {
-        health.note(&path, problem, "nothing; the running command writes it from time to time");
-    } else {
-        health.fault(&path, problem, write_again);
+        Ok(Some(false)) if health.running => {
+            let next = "nothing; the running command writes it from time to time";
+            health.note(&path, OTHER_TABLE, next);
+        }
+        Ok(Some(false)) => health.fault(&path, OTHER_TABLE, REPAIR),
     }
 }
 

@@ -208,27 +208,25 @@ impl<'a> Results<'a> {
         if path.is_dir() {
             self.set_aside(&path)?;
         }
-        let bytes = parquet::encode(table)
-            .map_err(|problem| Error::Disk { path: path.clone(), problem })?;
-        files::write_if_changed(self.files, &path, &bytes)
+        files::write_if_changed(self.files, &path, &self.table_bytes(table)?)
             .map_err(|error| disk_error(&path, &error))
     }
 
-    /// Reads the summary table.
+    /// Whether the file of the summary table holds this one, byte for byte; `None` without a file.
     ///
     /// # Errors
-    /// [`Error::Disk`] when there is no table, or as [`parquet::decode`].
-    pub fn read_table(&self) -> Result<Table> {
+    /// [`Error::Disk`].
+    pub fn holds_table(&self, table: &Table) -> Result<Option<bool>> {
         let path = self.table_path();
         match self.files.read(&path) {
-            Ok(bytes) => parquet::decode(&path, &bytes),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Err(Error::Disk {
-                path,
-                problem: "no table here\n  next: run `billow run STUDY` first, or name the folder \
-                          of its results"
-                    .to_owned(),
-            }),
+            Ok(bytes) => Ok(Some(bytes == self.table_bytes(table)?)),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
             Err(error) => Err(disk_error(&path, &error)),
         }
+    }
+
+    fn table_bytes(&self, table: &Table) -> Result<Vec<u8>> {
+        let at = |problem| Error::Disk { path: self.table_path(), problem };
+        parquet::encode(table).map_err(at)
     }
 }

@@ -52,7 +52,91 @@ pub struct Column {
     /// Meaning, one line.
     pub meaning: String,
     /// One value per row.
-    pub cells: Vec<Value>,
+    pub cells: ColumnCells,
+}
+
+/// The cells of a column. Where all of them are the same, as in a column that no job fills, one is kept.
+#[derive(Debug, Clone)]
+pub enum ColumnCells {
+    /// This cell, and the number of rows.
+    Same(Value, usize),
+    /// The cell of each row.
+    Each(Vec<Value>),
+}
+
+impl ColumnCells {
+    /// Number of rows.
+    #[expect(clippy::len_without_is_empty, reason = "no caller asks")]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Same(_, rows) => *rows,
+            Self::Each(cells) => cells.len(),
+        }
+    }
+
+    /// The cells in the order of the rows.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &Value> {
+        (0..self.len()).map(|row| &self[row])
+    }
+}
+
+impl From<Vec<Value>> for ColumnCells {
+    fn from(cells: Vec<Value>) -> Self {
+        // Zero and negative zero are two values.
+        let same = |a: &Value, b: &Value| match (a, b) {
+            (Value::Number(a), Value::Number(b)) => a.to_bits() == b.to_bits(),
+            _ => a == b,
+        };
+        match cells.first() {
+            Some(first) if cells.iter().all(|cell| same(first, cell)) => {
+                Self::Same(first.clone(), cells.len())
+            }
+            _ => Self::Each(cells),
+        }
+    }
+}
+
+impl std::ops::Index<usize> for ColumnCells {
+    type Output = Value;
+
+    fn index(&self, row: usize) -> &Value {
+        match self {
+            Self::Same(cell, rows) if row < *rows => cell,
+            Self::Same(_, rows) => panic!("row {row} of {rows}"),
+            Self::Each(cells) => &cells[row],
+        }
+    }
+}
+
+impl std::ops::IndexMut<usize> for ColumnCells {
+    fn index_mut(&mut self, row: usize) -> &mut Value {
+        if let Self::Same(cell, rows) = self {
+            *self = Self::Each(vec![cell.clone(); *rows]);
+        }
+        match self {
+            Self::Each(cells) => &mut cells[row],
+            Self::Same(..) => unreachable!("every row has its cell now"),
+        }
+    }
+}
+
+impl FromIterator<Value> for ColumnCells {
+    fn from_iter<I: IntoIterator<Item = Value>>(cells: I) -> Self {
+        cells.into_iter().collect::<Vec<_>>().into()
+    }
+}
+
+#[cfg(test)]
+impl<T: AsRef<[Value]>> PartialEq<T> for ColumnCells {
+    fn eq(&self, other: &T) -> bool {
+        self.iter().eq(other.as_ref())
+    }
+}
+
+impl PartialEq for ColumnCells {
+    fn eq(&self, other: &Self) -> bool {
+        self.iter().eq(other.iter())
+    }
 }
 
 impl Column {
@@ -65,7 +149,7 @@ impl Column {
     ) -> Self {
         let (name, meaning) = (name.into(), meaning.into());
         let (unit, shown) = (unit.to_owned(), DisplayUnit::si(unit));
-        Self { name, cell_type, unit, shown, meaning, cells }
+        Self { name, cell_type, unit, shown, meaning, cells: cells.into() }
     }
 
     /// A column without unit and meaning.
@@ -82,7 +166,7 @@ impl Column {
             unit: self.unit.clone(),
             shown: self.shown.clone(),
             meaning: self.meaning.clone(),
-            cells,
+            cells: cells.into(),
         }
     }
 
@@ -130,26 +214,6 @@ impl Table {
             column.shown = units.of(&column.name, &column.unit);
         }
         self
-    }
-
-    /// Number of rows in which another table differs; all rows when its columns differ. NaN is the same as NaN.
-    pub fn different_rows(&self, other: &Self) -> usize {
-        let names = |table: &Self| -> Vec<String> {
-            table.columns.iter().map(|column| column.name.clone()).collect()
-        };
-        let rows = self.rows().max(other.rows());
-        if self.rows() != other.rows() || names(self) != names(other) {
-            return rows;
-        }
-        let same = |a: &Value, b: &Value| match (a, b) {
-            (Value::Number(a), Value::Number(b)) => {
-                a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
-            }
-            _ => a == b,
-        };
-        let pairs = || self.columns.iter().zip(&other.columns);
-        let differs = |row: &usize| pairs().any(|(a, b)| !same(&a.cells[*row], &b.cells[*row]));
-        (0..rows).filter(differs).count()
     }
 
     /// Number of rows.

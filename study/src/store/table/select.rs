@@ -85,7 +85,7 @@ pub fn jobs(table: &Table, prefixes: &[String]) -> Result<Vec<usize>> {
     let ids: Vec<&str> = table
         .column("job")
         .into_iter()
-        .flat_map(|column| &column.cells)
+        .flat_map(|column| column.cells.iter())
         .map(|cell| if let Value::Text(id) = cell { id.as_str() } else { "" })
         .collect();
     let mut rows = Vec::with_capacity(prefixes.len());
