@@ -50,8 +50,9 @@ impl Cells {
         Some(Self::with(end.status, COLUMNS.iter().map(|column| (column.id, (column.take)(&end)))))
     }
 
-    fn with(status: Status, cells: impl IntoIterator<Item = (ColumnId, Value)>) -> Self {
-        let mut row = Self { status, present: 0, values: Vec::new() };
+    /// A row of these cells, that of the status among them; every other cell is null.
+    pub fn with(status: Status, cells: impl IntoIterator<Item = (ColumnId, Value)>) -> Self {
+        let mut row = Self { status, present: 0, values: Vec::with_capacity(COLUMNS.len()) };
         for (column, value) in cells {
             row.put(column, value);
         }

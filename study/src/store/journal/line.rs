@@ -222,7 +222,6 @@ fn read_cells<'de, D: Deserializer<'de>>(members: D) -> Result<Option<Cells>, D:
                     let known = Status::from_name(name);
                     let unknown = || A::Error::custom(format!("unknown status {name:?}"));
                     status = Some(known.ok_or_else(unknown)?);
-                    continue;
                 }
                 let value = from_json(id.column().cell_type, value).map_err(|value| {
                     A::Error::custom(format!("column {name:?} cannot hold {value}"))
@@ -230,11 +229,7 @@ fn read_cells<'de, D: Deserializer<'de>>(members: D) -> Result<Option<Cells>, D:
                 values.push((id, value));
             }
             let status = status.ok_or_else(|| A::Error::custom("record without a status"))?;
-            let mut cells = Cells::new(status);
-            for (id, value) in values {
-                cells.set(id, value);
-            }
-            Ok(cells)
+            Ok(Cells::with(status, values))
         }
     }
     members.deserialize_map(Members).map(Some)
