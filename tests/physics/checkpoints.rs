@@ -1,7 +1,7 @@
 //! Pauses and checkpoints of whole runs: the same bits as without them, at any step.
 
+use billow_solver::models;
 use billow_solver::models::run::run;
-use billow_solver::models::{self, ResumeError};
 use billow_solver::scene::paper;
 
 use crate::prelude::*;
@@ -72,10 +72,12 @@ fn resume(scene: &Scene, text: &str, observer: &mut dyn Observer) -> Deployment 
 
 #[test]
 fn a_pause_changes_no_bit_of_any_model() {
-    let mut piston = film();
-    piston.solver.model = ModelKind::Piston;
-    piston.solver.stepping = Stepping::Adaptive(1e-9);
-    for scene in [film(), piston] {
+    for model in ModelKind::ALL {
+        let mut scene = film();
+        scene.solver.model = model;
+        if model == ModelKind::Piston {
+            scene.solver.stepping = Stepping::Adaptive(1e-9);
+        }
         let whole = solve(&scene, &mut Unobserved);
         assert_eq!(whole.stop, Stop::Done);
         for every in [1, 7, 1000] {
@@ -119,24 +121,15 @@ fn a_run_stopped_anywhere_and_resumed_gives_the_same_bits() {
 }
 
 #[test]
-fn a_checkpoint_of_another_scene_or_model_is_refused() {
-    let scene = film();
+fn a_checkpoint_of_another_model_is_refused() {
+    let mut scene = film();
     let mut pausing = Pausing::new(10, Some(1));
     solve(&scene, &mut pausing);
     let text = &pausing.stored.unwrap();
-    let refused = |scene: &Scene, fingerprint: &str, text: &str| {
-        let stored = Stored { fingerprint, text };
-        match models::resume(InstructionSet::detect(), scene, &stored, &mut Unobserved) {
-            Err(ResumeError::Checkpoint(error)) => error,
-            other => panic!("{other:?}"),
-        }
-    };
-    assert_eq!(refused(&scene, "other", text), CheckpointError::Scene);
-    let damaged = text.replacen("0.", "1.", 1);
-    assert!(matches!(refused(&scene, "scene", &damaged), CheckpointError::Invalid(_)));
-    let mut piston = scene;
-    piston.solver.model = ModelKind::Piston;
-    assert!(refused(&piston, "scene", text).to_string().contains("has no checkpoints"));
+    scene.solver.model = ModelKind::Piston;
+    let stored = Stored { fingerprint: "scene", text };
+    let refused = models::resume(InstructionSet::detect(), &scene, &stored, &mut Unobserved);
+    assert!(refused.unwrap_err().to_string().contains("has no checkpoints"));
 }
 
 /// A failure keeps its step and its place, too: the monitor tests blocks of steps.

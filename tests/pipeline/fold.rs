@@ -24,8 +24,6 @@ fn prints_the_papers_capsule_in_si() {
     let number = |key: &str| answer[key].as_f64().expect(key);
     assert_eq!(answer["feasible"], true);
     assert!((number("phi").to_degrees() - 31.5137).abs() < 5e-5);
-    assert!((number("alpha1").to_degrees() - 28.4863).abs() < 5e-5);
-    assert!((number("ring_ratio") - 0.900_411).abs() < 5e-7);
     assert!((number("AE") - 0.829_579).abs() < 5e-7);
     assert!(number("closure_defect") < 1e-12);
     assert_eq!(answer["top_radius"], serde_json::json!(0.365), "a given value keeps its digits");

@@ -59,6 +59,12 @@ fn numbers(values: &[f64]) -> Vec<Value> {
 #[test]
 fn equal_values_give_the_same_job_id() {
     let expected = id(&capsule());
+    let changed = |pointer: &str, value: &Json| {
+        let mut study = capsule();
+        let (parent, leaf) = pointer.rsplit_once('/').unwrap();
+        study.pointer_mut(parent).unwrap()[leaf] = value.clone();
+        id(&study)
+    };
     for (pointer, value) in [
         ("/design/N", json!(6.0)),
         ("/design/height", json!(1.0)),
@@ -87,10 +93,7 @@ fn equal_values_give_the_same_job_id() {
         ("/question", json!("Another question?")),
         ("/version", json!(1)),
     ] {
-        let mut study = capsule();
-        let (parent, leaf) = pointer.rsplit_once('/').unwrap();
-        study.pointer_mut(parent).unwrap()[leaf] = value.clone();
-        assert_eq!(id(&study), expected, "{pointer} = {value}");
+        assert_eq!(changed(pointer, &value), expected, "{pointer} = {value}");
     }
     let reversed = r#"{"solver": {"end_time": 0.5, "model": "piston"}, "gas": {"mass_flow_rate": 0.005},
         "design": {"height": 1, "top_radius": 0.365, "bottom_radius": 0.5, "M": 3, "N": 6}}"#;
@@ -106,10 +109,7 @@ fn equal_values_give_the_same_job_id() {
         ("/solver/stepping", json!({"fixed": "10 us"})),
         ("/supports", json!([{"on": "bottom_ring", "fix": "z"}])),
     ] {
-        let mut study = capsule();
-        let (parent, leaf) = pointer.rsplit_once('/').unwrap();
-        study.pointer_mut(parent).unwrap()[leaf] = value.clone();
-        assert_ne!(id(&study), expected, "{pointer} = {value}");
+        assert_ne!(changed(pointer, &value), expected, "{pointer} = {value}");
     }
 }
 
@@ -132,11 +132,6 @@ fn a_grid_is_the_product_in_the_order_of_the_file() {
 #[test]
 fn ranges_give_the_values_a_list_would() {
     for (key, range, values) in [
-        (
-            "mass_flow_rate",
-            json!({"from": 0.001, "to": 0.005, "step": 0.001}),
-            vec![0.001, 0.002, 0.003, 0.004, 0.005],
-        ),
         (
             "mass_flow_rate",
             json!({"from": "1 g/s", "to": "5 g/s", "step": "2 g/s"}),

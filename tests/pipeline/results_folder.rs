@@ -46,24 +46,6 @@ fn a_job_has_the_same_history_in_every_study() {
 }
 
 #[test]
-fn a_lost_or_foreign_table_changes_no_answer_and_is_restored() {
-    let folder = ran();
-    let path = folder.results().join("summary.parquet");
-    let table = fs::read(&path).unwrap();
-    let all = ["table", "--columns", "all", "--format", "csv", "-q"];
-    let rows = folder.stdout(&all);
-    for damage in [None, Some(&b"a foreign file"[..]), Some(&table[..table.len() / 2])] {
-        match damage {
-            Some(bytes) => fs::write(&path, bytes).unwrap(),
-            None => fs::remove_file(&path).unwrap(),
-        }
-        assert_eq!(folder.stdout(&all), rows);
-        folder.stdout(&["run", "grid.json", "-q"]);
-        assert_eq!(fs::read(&path).unwrap(), table);
-    }
-}
-
-#[test]
 fn a_run_with_another_set_says_what_changed_and_keeps_every_job() {
     let folder = ran();
     let said = folder.run(&["run", "grid.json", "--set", "solver.end_time=0.3"]);

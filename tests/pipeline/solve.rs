@@ -10,7 +10,7 @@ use billow_study::input::schema::scene_schema;
 use billow_study::store::history_file;
 use serde_json::{Value, json};
 
-use crate::support::{paper_design, signal, stderr};
+use crate::support::{assert_valid, paper_design, signal, stderr};
 
 fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes")
@@ -94,12 +94,7 @@ fn every_scene_that_ships_is_sound_by_the_schema_and_listed() {
     for entry in fs::read_dir(scenes()).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|extension| extension == "json") {
-            let scene: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
-            let errors: Vec<_> = validator
-                .iter_errors(&scene)
-                .map(|e| format!("{}: {e}", e.instance_path()))
-                .collect();
-            assert!(errors.is_empty(), "{}: {errors:?}", path.display());
+            assert_valid(&validator, &fs::read_to_string(&path).unwrap());
             let name = path.file_name().unwrap().to_str().unwrap().to_owned();
             assert!(readme.contains(&format!("`{name}`")), "{name} is not listed");
             count += 1;

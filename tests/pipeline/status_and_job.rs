@@ -128,11 +128,6 @@ fn job_judges_a_job_by_the_limits_as_the_table_does() {
         let met = if row["safe"] == true { ": met, margin 0." } else { ": not met, margin -0." };
         assert!(said.contains("m/s, asked < 24 m/s") && said.contains(met), "{said}");
         assert!(said.contains(flow), "parameters have the units of the study: {said}");
-        let shown = json_of(&folder, &["job", id, "--all"]);
-        for name in ["safe", "smallest_margin", "smallest_margin_of", "margin_peak_vz"] {
-            let shown = shown.as_array().unwrap().iter().find(|shown| shown["name"] == name);
-            assert_eq!(shown.unwrap()["value"], row[name], "{name}");
-        }
     }
 }
 
@@ -160,12 +155,8 @@ fn job_ids_may_be_unique_prefixes() {
     let folder = ran();
     let mut all = ids(&folder, "done");
     all.sort();
-    for (arguments, expected) in [
-        (["job", ""], "no job has this id"),
-        (["job", &format!("{}0000000", &all[0][..8])], &all[0][..8]),
-    ] {
-        folder.refuses(&arguments, expected);
-    }
+    folder.refuses(&["job", ""], "no job has this id");
+    folder.refuses(&["job", &format!("{}0000000", &all[0][..8])], &all[0][..8]);
     // 24 ids share 16 first digits.
     let known = [all, ids(&folder, "infeasible")].concat();
     let count = |first: &str| known.iter().filter(|id| id.starts_with(first)).count();

@@ -9,6 +9,8 @@ use billow_study::job::JobId;
 use billow_study::study::plan::{Generation, next_jobs};
 use billow_study::study::{MAX_POINTS, Study};
 
+use crate::support::assert_valid;
+
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../studies")
 }
@@ -43,12 +45,7 @@ fn every_shipped_study_is_valid_and_plans_the_same_jobs_from_its_stored_file() {
 
         let resolved = serde_json::to_string(study.file()).unwrap();
         for text in [&fs::read_to_string(&path).unwrap(), &resolved] {
-            let json: serde_json::Value = serde_json::from_str(text).unwrap();
-            let errors: Vec<String> = validator
-                .iter_errors(&json)
-                .map(|error| format!("{}: {error}", error.instance_path()))
-                .collect();
-            assert!(errors.is_empty(), "{name}: {errors:?}");
+            assert_valid(&validator, text);
         }
         let again = Study::from_text(&resolved, "study.json", "x", &[], MAX_POINTS);
         let again = again.unwrap_or_else(|error| panic!("{name}: {error}"));

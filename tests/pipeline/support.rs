@@ -197,3 +197,18 @@ pub fn ids(folder: &TestFolder, status: &str) -> Vec<String> {
 pub fn file_of(folder: &TestFolder, id: &str) -> PathBuf {
     folder.results().join(format!("jobs/{}/{id}.h5", &id[..2]))
 }
+
+/// Width and height of a PNG, pixels.
+pub fn png_size(path: &Path) -> [u32; 2] {
+    let bytes = fs::read(path).unwrap();
+    assert!(bytes.starts_with(b"\x89PNG\r\n\x1a\n"));
+    [16, 20].map(|at| u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap()))
+}
+
+/// Fails unless a file is valid by its schema.
+pub fn assert_valid(schema: &jsonschema::Validator, text: &str) {
+    let json = serde_json::from_str(text).unwrap();
+    let errors: Vec<_> =
+        schema.iter_errors(&json).map(|e| format!("{}: {e}", e.instance_path())).collect();
+    assert!(errors.is_empty(), "{errors:?} in {text}");
+}

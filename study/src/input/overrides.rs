@@ -172,14 +172,11 @@ fn as_axis(section: &str, axis: &str, given: Json) -> Json {
 fn set_axis(tree: &mut Json, section: &str, axis: &str, given: Json) -> String {
     if let Some(Json::Object(members)) = member(tree, section) {
         if let Some((key, part)) = axis.rsplit_once('.')
-            && let Some((name, Json::Object(parts))) =
+            && let Some((name, parts @ Json::Object(_))) =
                 members.iter_mut().find(|(name, _)| same_key(name, key))
         {
             let path = format!("{section}.{name}.{part}");
-            match parts.iter_mut().find(|(name, _)| name == part) {
-                Some((_, old)) => *old = given,
-                None => parts.push((part.to_owned(), given)),
-            }
+            parts.set(part, given);
             return path;
         }
         let value = as_axis(section, axis, given);

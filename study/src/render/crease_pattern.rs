@@ -4,14 +4,16 @@
 //! `mountain` dash-dotted, `valley` dashed, `glue_flaps` thin; `dimensions` and `notes` are for the reader.
 //! The colours are suitable for colour-blind readers and in grey; the dashes also distinguish the lines.
 
-use std::fmt::Write;
-
 use billow_solver::geometry::fold::{Assignment, Corner, FoldPattern};
 use billow_solver::geometry::mesh_io::obj::Sheet;
 use nalgebra::Vector2;
 
+use super::page::{Anchor, Letters, Page, Position};
+
 /// Millimetres per metre.
 const MM: f64 = 1e3;
+/// Colour of texts.
+const INK: &str = "#333333";
 
 /// Draws a pattern, seen from outside. `flap` is the width of the glue flaps, m: one flap along the right
 /// side of the seam, and one along every edge of both caps.
@@ -21,13 +23,22 @@ pub fn svg(pattern: &FoldPattern, flap: Option<f64>) -> String {
 
 struct Drawing<'a> {
     pattern: &'a FoldPattern,
+    /// The developed film, mm.
     sheet: Sheet,
+    /// Width of the glue flaps, mm.
     flap: Option<f64>,
     /// Upper left corner of the page in sheet coordinates (y up), mm.
     origin: Vector2<f64>,
     size: Vector2<f64>,
     /// Size of the texts, mm: proportional to the sheet.
     letter: f64,
+    page: Page,
+}
+
+/// Lower and upper corner of the bounds of some positions.
+fn bounds<'a>(positions: impl Iterator<Item = &'a Vector2<f64>>) -> [Vector2<f64>; 2] {
+    let start = [f64::INFINITY, f64::NEG_INFINITY].map(Vector2::repeat);
+    positions.fold(start, |[low, high], position| [low.inf(position), high.sup(position)])
 }
 
 impl<'a> Drawing<'a> {
@@ -37,38 +48,66 @@ impl<'a> Drawing<'a> {
         for position in sheet.corners.iter_mut().chain(bottom_cap).chain(top_cap) {
             *position *= MM;
         }
-        let all = || sheet.corners.iter().chain(sheet.caps.iter().flatten());
-        let low = all().fold(Vector2::repeat(f64::INFINITY), |low, p| low.inf(p));
-        let high = all().fold(Vector2::repeat(f64::NEG_INFINITY), |high, p| high.sup(p));
+        let [low, high] = bounds(sheet.corners.iter().chain(sheet.caps.iter().flatten()));
         let letter = 0.016 * (high.y - low.y).max(0.3 * (high.x - low.x));
         let margin = flap.unwrap_or(0.0) + 6.0 * letter;
         let below = 7.0 * letter;
         let origin = Vector2::new(low.x - margin, high.y + margin);
         let size = high - low + Vector2::new(2.0 * margin, 2.0 * margin + below);
-        Self { pattern, sheet, flap, origin, size, letter }
+        Self { pattern, sheet, flap, origin, size, letter, page: Page::new() }
     }
 
-    fn draw(&self) -> String {
-        let (w, h) = (self.size.x, self.size.y);
-        let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w:.3}mm\" height=\"{h:.3}mm\" \
-             viewBox=\"0 0 {w:.3} {h:.3}\" font-family=\"sans-serif\" font-size=\"{:.3}\">\n\
-             <title>{}</title>\n",
-            self.letter,
-            self.title()
-        );
+    fn draw(mut self) -> String {
         let line = (0.03 * self.letter).max(0.1);
-        self.lines(&mut svg, "cut", Assignment::Boundary, &stroke("#000000", 1.5 * line, ""));
         let dash = self.letter * 0.6;
         let dots = format!("{dash:.2} {:.2} {:.2} {:.2}", 0.4 * dash, 0.1 * dash, 0.4 * dash);
-        self.lines(&mut svg, "mountain", Assignment::Mountain, &stroke("#d55e00", line, &dots));
         let dashes = format!("{:.2} {:.2}", 0.7 * dash, 0.5 * dash);
-        self.lines(&mut svg, "valley", Assignment::Valley, &stroke("#0072b2", line, &dashes));
-        self.flaps(&mut svg, &stroke("#666666", line, ""));
-        self.dimensions(&mut svg, &stroke("#333333", 0.7 * line, ""));
-        self.notes(&mut svg);
-        svg.push_str("</svg>\n");
-        svg
+        for (name, colour, width, dashes, assignment) in [
+            ("cut", "#000000", 1.5 * line, "none", Assignment::Boundary),
+            ("mountain", "#d55e00", line, &dots, Assignment::Mountain),
+            ("valley", "#0072b2", line, &dashes, Assignment::Valley),
+        ] {
+            self.layer(name, colour, width, dashes);
+            let creases = self.pattern.creases().into_iter();
+            for crease in creases.filter(|crease| crease.assignment == assignment) {
+                self.path(&crease.ends.map(|end| self.corner(end)), "");
+            }
+            if assignment == Assignment::Boundary {
+                self.sheet.caps.clone().iter().for_each(|cap| self.path(cap, "z"));
+            }
+            self.page.close();
+        }
+        if let Some(width) = self.flap {
+            self.layer("glue_flaps", "#666666", line, "none");
+            self.flaps(width);
+            self.page.close();
+        }
+        let [low, high] = bounds(self.sheet.corners.iter());
+        let outside = low.add_scalar(-1.5 * self.letter);
+        let sides = [
+            [Vector2::new(low.x, outside.y), Vector2::new(high.x, outside.y)],
+            [Vector2::new(outside.x, low.y), Vector2::new(outside.x, high.y)],
+        ];
+        self.layer("dimensions", INK, 0.7 * line, "none");
+        for side in &sides {
+            self.path(side, "");
+        }
+        self.page.close();
+        self.page.open("notes", "");
+        for side in sides {
+            self.label(side);
+        }
+        self.lengths();
+        self.notes();
+        self.page.close();
+        let title = self.title();
+        self.page.finish(self.size.x, self.size.y, &title)
+    }
+
+    /// Opens a layer of lines.
+    fn layer(&mut self, name: &str, colour: &str, width: f64, dashes: &str) {
+        let style = format!("stroke=\"{colour}\" stroke-width=\"{width:.3}\"");
+        self.page.open(name, &format!("{style} stroke-dasharray=\"{dashes}\""));
     }
 
     fn title(&self) -> String {
@@ -77,8 +116,8 @@ impl<'a> Drawing<'a> {
     }
 
     /// Page coordinates, y down.
-    fn page(&self, position: Vector2<f64>) -> Vector2<f64> {
-        Vector2::new(position.x - self.origin.x, self.origin.y - position.y)
+    fn place(&self, position: Vector2<f64>) -> Position {
+        [position.x - self.origin.x, self.origin.y - position.y]
     }
 
     fn corner(&self, corner: Corner) -> Vector2<f64> {
@@ -86,128 +125,71 @@ impl<'a> Drawing<'a> {
         self.sheet.corners[(corner.ring * across + corner.corner) as usize]
     }
 
-    fn lines(&self, svg: &mut String, id: &str, assignment: Assignment, style: &str) {
-        let _ = writeln!(svg, "<g id=\"{id}\" {style}>");
-        for crease in self.pattern.creases().iter().filter(|crease| crease.assignment == assignment)
-        {
-            self.segment(svg, crease.ends.map(|end| self.corner(end)));
-        }
-        if assignment == Assignment::Boundary {
-            for cap in &self.sheet.caps {
-                let points: Vec<String> = cap
-                    .iter()
-                    .map(|position| self.page(*position))
-                    .map(|p| format!("{:.4},{:.4}", p.x, p.y))
-                    .collect();
-                let _ = writeln!(svg, "<polygon points=\"{}\"/>", points.join(" "));
-            }
-        }
-        svg.push_str("</g>\n");
+    /// A line through some positions; `end` is `z` for a closed one.
+    fn path(&mut self, positions: &[Vector2<f64>], end: &str) {
+        let places = positions.iter().map(|position| self.place(*position));
+        let places: Vec<String> = places.map(|[x, y]| format!("{x:.4},{y:.4}")).collect();
+        self.page.path("none", &format!("M{}{end}", places.join(" ")));
     }
 
-    fn segment(&self, svg: &mut String, [from, to]: [Vector2<f64>; 2]) {
-        let (p, q) = (self.page(from), self.page(to));
-        let _ = writeln!(
-            svg,
-            "<line x1=\"{:.4}\" y1=\"{:.4}\" x2=\"{:.4}\" y2=\"{:.4}\"/>",
-            p.x, p.y, q.x, q.y
-        );
-    }
-
-    fn flaps(&self, svg: &mut String, style: &str) {
-        let Some(width) = self.flap else { return };
-        let _ = writeln!(svg, "<g id=\"glue_flaps\" {style}>");
+    fn flaps(&mut self, width: f64) {
         let design = &self.pattern.design;
-        for ring in 0..design.storeys {
-            let side =
-                [ring, ring + 1].map(|ring| self.corner(Corner { ring, corner: design.panels }));
-            self.flap(svg, side, width);
-        }
+        let corner = |ring| self.corner(Corner { ring, corner: design.panels });
+        let mut edges: Vec<_> =
+            (0..design.storeys).map(|ring| [ring, ring + 1].map(corner)).collect();
         for cap in &self.sheet.caps {
-            for (i, from) in cap.iter().enumerate() {
-                self.flap(svg, [*from, cap[(i + 1) % cap.len()]], width);
-            }
+            edges.extend((0..cap.len()).map(|i| [cap[i], cap[(i + 1) % cap.len()]]));
         }
-        svg.push_str("</g>\n");
+        // A trapezium on the right-hand side of an edge. Its ends are cut at 45°, so that adjacent flaps
+        // do not overlap.
+        for [from, to] in edges {
+            let along = (to - from).normalize();
+            let outward = Vector2::new(along.y, -along.x);
+            let width = width.min(0.4 * (to - from).norm());
+            let tip = [from + (along + outward) * width, to + (outward - along) * width];
+            self.path(&[from, tip[0], tip[1], to], "");
+        }
     }
 
-    /// A trapezium on the right-hand side of an edge. Its ends are cut at 45°, so that adjacent flaps do not
-    /// overlap.
-    fn flap(&self, svg: &mut String, [from, to]: [Vector2<f64>; 2], width: f64) {
-        let along = (to - from).normalize();
-        let outward = Vector2::new(along.y, -along.x);
-        let width = width.min(0.4 * (to - from).norm());
-        let tip = [from + (along + outward) * width, to + (outward - along) * width];
-        let points: Vec<String> = [from, tip[0], tip[1], to]
-            .map(|position| self.page(position))
-            .iter()
-            .map(|p| format!("{:.4},{:.4}", p.x, p.y))
-            .collect();
-        let _ = writeln!(svg, "<polyline points=\"{}\"/>", points.join(" "));
-    }
-
-    /// The lengths of one panel per storey along its lines, and the size of the sheet.
-    fn dimensions(&self, svg: &mut String, style: &str) {
-        let _ = writeln!(svg, "<g id=\"dimensions\" {style}>");
-        let design = &self.pattern.design;
-        for ring in 0..=design.storeys {
-            let ends = [0, 1].map(|corner| self.corner(Corner { ring, corner }));
-            self.label(svg, ends, &format!("{:.2}", (ends[1] - ends[0]).norm()));
+    /// The lengths of one panel per storey along its lines.
+    fn lengths(&mut self) {
+        for ring in 0..=self.pattern.design.storeys {
+            self.label([0, 1].map(|corner| self.corner(Corner { ring, corner })));
         }
         for crease in self.pattern.creases() {
             let [from, to] = crease.ends;
             // One side and one diagonal per storey: those of the second panel, away from the seam.
             let second = from.corner.min(to.corner) == 1 && from.corner.max(to.corner) <= 2;
             if from.ring != to.ring && second {
-                let ends = [self.corner(from), self.corner(to)];
-                self.label(svg, ends, &format!("{:.2}", (ends[1] - ends[0]).norm()));
+                self.label([self.corner(from), self.corner(to)]);
             }
         }
-        let lateral = |pick: fn(f64, f64) -> f64, start: f64, of: fn(&Vector2<f64>) -> f64| {
-            self.sheet.corners.iter().fold(start, |best, position| pick(best, of(position)))
-        };
-        let (left, right) = (
-            lateral(f64::min, f64::INFINITY, |p| p.x),
-            lateral(f64::max, f64::NEG_INFINITY, |p| p.x),
-        );
-        let (low, high) = (
-            lateral(f64::min, f64::INFINITY, |p| p.y),
-            lateral(f64::max, f64::NEG_INFINITY, |p| p.y),
-        );
-        let below = low - 1.5 * self.letter;
-        let beside = left - 1.5 * self.letter;
-        for ends in [
-            [Vector2::new(left, below), Vector2::new(right, below)],
-            [Vector2::new(beside, low), Vector2::new(beside, high)],
-        ] {
-            self.segment(svg, ends);
-            self.label(svg, ends, &format!("{:.2}", (ends[1] - ends[0]).norm()));
+        for [from, to] in [0, 1].map(|cap| [0, 1].map(|corner| self.sheet.caps[cap][corner])) {
+            self.label([from, to]);
         }
-        for cap in &self.sheet.caps {
-            self.label(svg, [cap[0], cap[1]], &format!("{:.2}", (cap[1] - cap[0]).norm()));
-        }
-        svg.push_str("</g>\n");
     }
 
-    /// Text along a line, above its middle and never upside down.
-    fn label(&self, svg: &mut String, ends: [Vector2<f64>; 2], text: &str) {
-        let [mut p, mut q] = ends.map(|end| self.page(end));
+    /// The length of a line, mm, above its middle and never upside down.
+    fn label(&mut self, ends: [Vector2<f64>; 2]) {
+        let [mut p, mut q] = ends.map(|end| Vector2::from(self.place(end)));
         if q.x < p.x || (q.x <= p.x && q.y > p.y) {
             std::mem::swap(&mut p, &mut q);
         }
-        let (middle, along) = (0.5 * (p + q), q - p);
-        let degrees = libm::atan2(along.y, along.x).to_degrees();
-        let _ = writeln!(
-            svg,
-            "<text transform=\"translate({:.3} {:.3}) rotate({degrees:.3})\" y=\"{:.3}\" \
-             text-anchor=\"middle\" stroke=\"none\" fill=\"#333333\">{text}</text>",
-            middle.x,
-            middle.y,
-            -0.3 * self.letter
-        );
+        let along = q - p;
+        let above = Vector2::new(along.y, -along.x).normalize() * (0.3 * self.letter);
+        let letters = Letters {
+            turn: libm::atan2(along.y, along.x).to_degrees(),
+            ..self.letters().at(Anchor::Middle)
+        };
+        let position = 0.5 * (p + q) + above;
+        self.page.text(position.into(), &letters, &format!("{:.2}", along.norm()));
     }
 
-    fn notes(&self, svg: &mut String) {
+    fn letters(&self) -> Letters<'static> {
+        Letters { colour: INK, ..Letters::new(self.letter) }
+    }
+
+    fn notes(&mut self) {
         let pattern = self.pattern;
         let degrees = |angle: f64| angle.to_degrees();
         let angles = &pattern.angles;
@@ -237,21 +219,55 @@ impl<'a> Drawing<'a> {
             ),
             "cut: solid; mountain: dash-dotted; valley: dashed".to_owned(),
         ];
-        svg.push_str("<g id=\"notes\" fill=\"#333333\">\n");
-        let left = 6.0 * self.letter;
         for (row, note) in notes.iter().enumerate() {
             let y = self.size.y - (5.2 - 1.3 * row as f64) * self.letter;
-            let _ = writeln!(svg, "<text x=\"{left:.3}\" y=\"{y:.3}\">{note}</text>");
+            self.page.text([6.0 * self.letter, y], &self.letters(), note);
         }
-        svg.push_str("</g>\n");
     }
 }
 
-fn stroke(colour: &str, width: f64, dashes: &str) -> String {
-    let dashes =
-        if dashes.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{dashes}\"") };
-    format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width:.3}\"{dashes}")
-}
-
 #[cfg(test)]
-mod tests;
+mod tests {
+    use billow_solver::scene::paper;
+    use resvg::usvg::roxmltree::{Document, Node};
+
+    use super::*;
+
+    /// The lines of a layer of the paper's capsule: their corners, mm.
+    fn layer(svg: &str, name: &str) -> Vec<Vec<Vector2<f64>>> {
+        let svg = Document::parse(svg).unwrap();
+        let group = svg.descendants().find(|node| node.attribute("id") == Some(name));
+        let corner = |pair: &str| {
+            let [x, y] = [0, 1].map(|at| pair.split(',').nth(at).unwrap().parse::<f64>().unwrap());
+            Vector2::new(x, y)
+        };
+        let corners = |path: Node<'_, '_>| -> Option<Vec<Vector2<f64>>> {
+            Some(path.attribute("d")?.trim_matches(['M', 'z']).split(' ').map(corner).collect())
+        };
+        group.map_or_else(Vec::new, |group| group.children().filter_map(corners).collect())
+    }
+
+    #[test]
+    fn the_pattern_is_drawn_one_to_one_in_millimetres() {
+        let pattern = FoldPattern::new(&paper::empty_capsule(1, 1.0).design).unwrap();
+        let plain = svg(&pattern, None);
+        let count = |name: &str| layer(&plain, name).len();
+        assert_eq!((count("cut"), count("mountain")), (2 * 6 + 2 * 3 + 2, 2 * 6 + 3 * 5));
+        let valleys = layer(&plain, "valley");
+        assert_eq!((valleys.len(), count("glue_flaps")), (18, 0));
+        for storey in 0..3 {
+            let diagonal = 1e3 * pattern.lengths(storey).ae;
+            let long =
+                |line: &&Vec<Vector2<f64>>| ((line[1] - line[0]).norm() - diagonal).abs() < 1e-3;
+            assert_eq!(valleys.iter().filter(long).count(), 6);
+        }
+        // The user unit of the page is 1 mm.
+        let width = plain.split("width=\"").nth(1).unwrap().split("mm").next().unwrap();
+        assert!(plain.contains(&format!("viewBox=\"0 0 {width} ")));
+        for length in ["523.17", "446.07", "829.58", "381.91"] {
+            assert!(plain.contains(&format!(">{length}</text>")), "{length}");
+        }
+        // The seam and the caps have glue flaps.
+        assert_eq!(layer(&svg(&pattern, Some(0.015)), "glue_flaps").len(), 3 + 2 * 6);
+    }
+}

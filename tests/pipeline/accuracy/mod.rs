@@ -7,7 +7,7 @@ use std::process::Output;
 
 use serde_json::{Value, json};
 
-use crate::support::{TestFolder, json_of, stderr};
+use crate::support::{TestFolder, stderr};
 
 /// All that a command printed.
 fn said(output: &Output) -> String {
@@ -42,21 +42,4 @@ fn a_row_outside_the_table_says_why_it_has_no_error() {
     let row = &folder.rows("results/grid")[0];
     assert_eq!(row["no_error_reason"], "contact.friction 0.2: the runs of the table have 0");
     assert_eq!(row["peak_vz_change_to_n24"], Value::Null);
-}
-
-/// A mesh error of the piston would make every comparison of its rows a tie.
-#[test]
-fn rows_of_the_piston_have_no_mesh_error_and_say_where_theirs_is() {
-    let mut study = film(&json!({"grid": {"mass_flow_rate": ["5 g/s", "10 g/s"]}}));
-    study["solver"]["model"] = json!("piston");
-    study["gas"] = json!({});
-    let folder = TestFolder::finished(&study);
-    for row in folder.rows("results/grid") {
-        assert_eq!(row["t_90_z_rim_error"], Value::Null);
-        let reason = row["no_error_reason"].as_str().unwrap();
-        assert!(reason.contains("those of film, not of piston"), "{reason}");
-    }
-    let args = ["compare", "--by", "mass_flow_rate", "--base", "5 g/s", "--measures", "t_90_z_rim"];
-    let pairs = json_of(&folder, &args);
-    assert_eq!(pairs[0]["t_90_z_rim_better"], "other", "{pairs}");
 }

@@ -1,4 +1,4 @@
-use super::listing::{FileKind, entries};
+use super::listing::{FileKind, Parts, entries};
 use super::*;
 use crate::input::json::Json;
 use crate::input::syntax::parse;
@@ -6,20 +6,12 @@ use crate::input::value::Value;
 
 /// Every key of both kinds of file, those of objects included.
 fn all_keys() -> impl Iterator<Item = &'static Key> {
-    let study = [KEYS, STRATEGY_KEYS, WINDOW_KEYS, CAPSULE_SUPPORT_KEYS];
-    let scene = [
-        MESH_KEYS,
-        SCENE_WINDOW_KEYS,
-        SUPPORT_KEYS,
-        BODY_KEYS,
-        MOVE_KEYS,
-        ROTATION_KEYS,
-        PLATE_KEYS,
-        START_KEYS,
-        SPIN_KEYS,
-        OUTPUT_KEYS,
-    ];
-    SCENE.keys.iter().copied().chain(study.into_iter().chain(scene).flatten())
+    let keys = |file: FileKind| {
+        let Parts { table, objects, .. } = file.parts();
+        table.keys.iter().copied().chain(objects.iter().flat_map(|(_, keys)| *keys))
+    };
+    let both = [FileKind::Study, FileKind::Scene].into_iter().flat_map(keys);
+    both.filter(|key| key.path != "gravity").chain(RANGE_KEYS).chain(SEARCH_KEYS)
 }
 
 #[test]

@@ -257,7 +257,7 @@ impl Maps {
             debug_assert_eq!(panel.cells.len(), self.x.1.len() * self.y.1.len());
         }
         let middle = Letters::new(MEDIUM).at(Anchor::Middle);
-        let letters = Letters { upwards: true, ..middle };
+        let letters = Letters { turn: -90.0, ..middle };
         let label = cut(&self.y.0, MEDIUM, bottom - first + 8.0);
         page.text([MARGIN + MEDIUM, 0.5 * (first + bottom)], &letters, &label);
         let label = cut(&self.x.0, MEDIUM, INNER + MARGIN - layout.left);
@@ -333,7 +333,7 @@ impl Maps {
             page.line([right, y], [right + 1.0, y], &AXIS);
             page.text([right + 1.8, y + 0.36 * SMALL], &Letters::new(SMALL), &text);
         }
-        let letters = Letters { upwards: true, ..Letters::new(MEDIUM).at(Anchor::Middle) };
+        let letters = Letters { turn: -90.0, ..Letters::new(MEDIUM).at(Anchor::Middle) };
         for (number, line) in lines.iter().enumerate() {
             let x = right + 1.8 + widest + 1.3 * MEDIUM * (number + 1) as f64;
             let line = cut(line, MEDIUM, height.max(MIN_BAR_HEIGHT) + 6.0);

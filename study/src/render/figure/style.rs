@@ -204,7 +204,7 @@ fn shape(
         Fill::Half => {
             page.clip(centre.map(|end| end - 1.3 * half), [1.3 * half, 2.6 * half]);
             shape(page, centre, number, (colour, ground, Fill::Filled), size);
-            page.unclip();
+            page.close();
         }
         Fill::Crossed => cross(page, centre, &Stroke::solid(colour, 0.25), 0.55 * size),
         Fill::Filled | Fill::Open => {}

@@ -33,24 +33,28 @@ fn elements() -> (Vec<[u32; 3]>, Vec<u32>) {
     (triangles, [[1; 8].as_slice(), &[2; 8], &[3; 2]].concat())
 }
 
+/// A filmstrip of the box seen along x, in the colours of its storeys.
+fn strip<'a>(film: &'a (Vec<[u32; 3]>, Vec<u32>), frames: &'a [Frame]) -> Filmstrip<'a> {
+    Filmstrip {
+        title: "grid: job 01234567 (N=5 & M<3)",
+        triangles: &film.0,
+        storeys: &film.1,
+        frames,
+        view: View::new(0.0, 0.0),
+        colour: Colour::Storey,
+        values: &[],
+        notes: &[],
+    }
+}
+
 #[expect(clippy::cast_possible_truncation, reason = "invented numbers")]
 fn drawn(times: &[f64], colour: Colour) -> String {
-    let (triangles, storeys) = elements();
     let frames: Vec<Frame> =
         times.iter().map(|time| shape(*time, 0.04 + 0.2 * *time as f32)).collect();
     let values: Vec<Vec<String>> =
         times.iter().map(|time| vec![format!("t {time}"), "p 2 kPa".to_owned()]).collect();
-    Filmstrip {
-        title: "grid: job 01234567 (N=5 & M<3)",
-        triangles: &triangles,
-        storeys: &storeys,
-        frames: &frames,
-        view: View::new(0.0, 0.0),
-        colour,
-        values: &values,
-        notes: &["a note".to_owned()],
-    }
-    .svg()
+    let notes = ["a note".to_owned()];
+    Filmstrip { colour, values: &values, notes: &notes, ..strip(&elements(), &frames) }.svg()
 }
 
 fn texts(svg: &Document<'_>) -> Vec<String> {
@@ -157,19 +161,9 @@ fn a_quantity_has_one_scale_with_its_unit() {
 
 #[test]
 fn the_legend_lists_storeys_that_share_a_colour() {
-    let (triangles, _) = elements();
-    let storeys: Vec<u32> = (1..=18).collect();
+    let film = (elements().0, (1..=18).collect());
     let frames = [shape(0.0, 0.1)];
-    let strip = Filmstrip {
-        title: "",
-        triangles: &triangles,
-        storeys: &storeys,
-        frames: &frames,
-        view: View::new(0.5, 0.4),
-        colour: Colour::Storey,
-        values: &[],
-        notes: &[],
-    };
+    let strip = strip(&film, &frames);
     let names: Vec<String> = strip.legend().entries.into_iter().map(|(_, name)| name).collect();
     assert_eq!(names.len(), 8);
     assert_eq!(names[2], "storey 3, 10, 17");
@@ -201,20 +195,16 @@ proptest! {
         count in 1_usize..40, tall in 0.001_f32..50.0, azimuth in -4.0..4.0_f64,
         elevation in -1.5..1.5_f64,
     ) {
-        let (triangles, storeys) = elements();
+        let film = elements();
         let frames: Vec<Frame> = (0..count).map(|n| shape(n as f64, tall)).collect();
         let title = "long ".repeat(50);
         let mut lines = vec!["1 ms".to_owned(), "long ".repeat(9), "2 kPa".to_owned()];
         lines.truncate(if count > 24 { 1 } else { 3 });
         let strip = Filmstrip {
             title: &title,
-            triangles: &triangles,
-            storeys: &storeys,
-            frames: &frames,
             view: View::new(azimuth, elevation),
-            colour: Colour::Storey,
             values: &vec![lines; count],
-            notes: &[],
+            ..strip(&film, &frames)
         };
         let text = strip.svg();
         let svg = Document::parse(&text).unwrap();

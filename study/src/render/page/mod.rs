@@ -62,14 +62,14 @@ pub struct Letters<'a> {
     pub colour: &'a str,
     /// Part of the text at its position.
     pub anchor: Anchor,
-    /// Whether the text runs upwards.
-    pub upwards: bool,
+    /// Clockwise turn, degrees.
+    pub turn: f64,
 }
 
 impl Letters<'_> {
     /// Black text that starts at its position.
     pub const fn new(size: f64) -> Self {
-        Self { size, colour: "#000000", anchor: Anchor::Start, upwards: false }
+        Self { size, colour: "#000000", anchor: Anchor::Start, turn: 0.0 }
     }
 
     /// The same style with another anchor.
@@ -92,79 +92,54 @@ impl Page {
         Self::default()
     }
 
+    /// Adds an element: its name and geometry, then its style.
+    fn add(&mut self, shape: &str, style: &str) {
+        let _ = writeln!(self.body, "<{shape} {style}/>");
+    }
+
     /// A straight line.
-    pub fn line(&mut self, from: Position, to: Position, stroke: &Stroke) {
-        let _ = writeln!(
-            self.body,
-            "<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" {}/>",
-            mm(from[0]),
-            mm(from[1]),
-            mm(to[0]),
-            mm(to[1]),
-            stroke.attributes()
-        );
+    pub fn line(&mut self, [a, b]: Position, [c, d]: Position, stroke: &Stroke) {
+        let [a, b, c, d] = [a, b, c, d].map(mm);
+        let line = format!("line x1=\"{a}\" y1=\"{b}\" x2=\"{c}\" y2=\"{d}\"");
+        self.add(&line, &stroke.attributes());
     }
 
     /// A line through several positions; nothing for fewer than two.
     pub fn polyline(&mut self, positions: &[Position], stroke: &Stroke) {
         if positions.len() > 1 {
-            let _ = writeln!(
-                self.body,
-                "<polyline points=\"{}\" fill=\"none\" stroke-linejoin=\"round\" {}/>",
-                points(positions),
-                stroke.attributes()
-            );
+            let line = format!("polyline points=\"{}\" fill=\"none\"", points(positions));
+            self.add(&line, &format!("stroke-linejoin=\"round\" {}", stroke.attributes()));
         }
     }
 
     /// A closed area.
     pub fn polygon(&mut self, positions: &[Position], fill: &str, stroke: &Stroke) {
-        let _ = writeln!(
-            self.body,
-            "<polygon points=\"{}\" fill=\"{fill}\" {}/>",
-            points(positions),
-            stroke.attributes()
-        );
+        let area = format!("polygon points=\"{}\" fill=\"{fill}\"", points(positions));
+        self.add(&area, &stroke.attributes());
     }
 
     /// A closed area in a colour with an opacity from 0 to 1.
     pub fn shade(&mut self, positions: &[Position], colour: &str, opacity: f64) {
-        let _ = writeln!(
-            self.body,
-            "<polygon points=\"{}\" fill=\"{colour}\" fill-opacity=\"{opacity}\" stroke=\"none\"/>",
-            points(positions)
-        );
+        let area = format!("polygon points=\"{}\" fill=\"{colour}\"", points(positions));
+        self.add(&area, &format!("fill-opacity=\"{opacity}\" stroke=\"none\""));
     }
 
     /// A circle.
-    pub fn circle(&mut self, centre: Position, radius: f64, fill: &str, stroke: &Stroke) {
-        let _ = writeln!(
-            self.body,
-            "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{fill}\" {}/>",
-            mm(centre[0]),
-            mm(centre[1]),
-            mm(radius),
-            stroke.attributes()
-        );
+    pub fn circle(&mut self, [x, y]: Position, radius: f64, fill: &str, stroke: &Stroke) {
+        let [x, y, radius] = [x, y, radius].map(mm);
+        let circle = format!("circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"{fill}\"");
+        self.add(&circle, &stroke.attributes());
     }
 
     /// A filled rectangle with this upper left corner and size. Adjacent rectangles show no gap.
     pub fn fill(&mut self, corner: Position, size: [f64; 2], colour: &str) {
-        let _ = writeln!(
-            self.body,
-            "<rect {} fill=\"{colour}\" shape-rendering=\"crispEdges\"/>",
-            rectangle(corner, size)
-        );
+        let style = format!("fill=\"{colour}\" shape-rendering=\"crispEdges\"");
+        self.add(&rectangle(corner, size), &style);
     }
 
     /// The outline of a rectangle with this upper left corner and size.
     pub fn frame(&mut self, corner: Position, size: [f64; 2], stroke: &Stroke) {
-        let _ = writeln!(
-            self.body,
-            "<rect {} fill=\"none\" {}/>",
-            rectangle(corner, size),
-            stroke.attributes()
-        );
+        self.add(&rectangle(corner, size), &format!("fill=\"none\" {}", stroke.attributes()));
     }
 
     /// Lines at 45° across a rectangle, at a distance of `gap` mm along its edges.
@@ -188,10 +163,9 @@ impl Page {
             Anchor::Middle => "middle",
             Anchor::End => "end",
         };
-        let rotation = if letters.upwards {
-            format!(" transform=\"rotate(-90 {x} {y})\"")
-        } else {
-            String::new()
+        let rotation = match letters.turn {
+            0.0 => String::new(),
+            turn => format!(" transform=\"rotate({} {x} {y})\"", mm(turn)),
         };
         let _ = writeln!(
             self.body,
@@ -215,28 +189,23 @@ impl Page {
 
     /// A filled SVG path `d` with the stroke of its group.
     pub fn path(&mut self, fill: &str, d: &str) {
-        let _ = writeln!(self.body, "<path fill=\"{fill}\" d=\"{d}\"/>");
+        self.add("path", &format!("fill=\"{fill}\" d=\"{d}\""));
     }
 
-    /// Ends the group of [`Self::open`].
+    /// Ends the group of [`Self::open`], [`Self::fade`] or [`Self::clip`].
     pub fn close(&mut self) {
         self.body.push_str("</g>\n");
     }
 
-    /// Clips the following shapes to a rectangle; [`Self::unclip`] ends it.
+    /// Clips the following shapes to a rectangle; [`Self::close`] ends it.
     pub fn clip(&mut self, corner: Position, size: [f64; 2]) {
         self.clips += 1;
         let _ = writeln!(
             self.body,
-            "<clipPath id=\"clip{0}\"><rect {1}/></clipPath>\n<g clip-path=\"url(#clip{0})\">",
+            "<clipPath id=\"clip{0}\"><{1}/></clipPath>\n<g clip-path=\"url(#clip{0})\">",
             self.clips,
             rectangle(corner, size)
         );
-    }
-
-    /// Ends the clipping of [`Self::clip`].
-    pub fn unclip(&mut self) {
-        self.body.push_str("</g>\n");
     }
 
     /// The SVG text on a white ground; `title` is the title for screen readers.
@@ -255,13 +224,8 @@ impl Page {
 }
 
 fn rectangle([x, y]: Position, [width, height]: [f64; 2]) -> String {
-    format!(
-        "x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"",
-        mm(x),
-        mm(y),
-        mm(width.max(0.0)),
-        mm(height.max(0.0))
-    )
+    let [x, y, width, height] = [x, y, width.max(0.0), height.max(0.0)].map(mm);
+    format!("rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"")
 }
 
 fn points(positions: &[Position]) -> String {

@@ -114,17 +114,13 @@ fn closing_groups(object: &Object<'_>, surface: &Surface) -> Result<Vec<bool>> {
         None => Vec::new(),
         Some(Json::Text(name)) => vec![name.as_str()],
         Some(Json::List(items)) => {
-            let text = |item: &'_ Json| matches!(item, Json::Text(_));
-            if !items.iter().all(text) {
-                let problem = "has an item that is not a name";
-                return Err(object.error("closure", problem, CLOSURE).into());
-            }
-            items
-                .iter()
-                .filter_map(
-                    |item| if let Json::Text(name) = item { Some(name.as_str()) } else { None },
-                )
-                .collect()
+            let names = items.iter().map(|item| match item {
+                Json::Text(name) => Some(name.as_str()),
+                _ => None,
+            });
+            let names: Option<Vec<&str>> = names.collect();
+            let problem = "has an item that is not a name";
+            names.ok_or_else(|| object.error("closure", problem, CLOSURE))?
         }
         Some(_) => {
             return Err(object

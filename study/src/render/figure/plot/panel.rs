@@ -34,7 +34,7 @@ impl Panel {
         page.clip(corner, size);
         self.lines.iter().for_each(|line| line.draw_bands(page, frame));
         self.lines.iter().for_each(|line| line.draw_pieces(page, frame));
-        page.unclip();
+        page.close();
         page.frame(corner, size, &AXIS);
         for (number, line) in self.lines.iter().enumerate() {
             line.draw_points(page, frame, (number, self.lines.len()));
@@ -76,7 +76,7 @@ impl Panel {
             page.line([left, y], [right, y], &ZERO);
         }
         if frame.first {
-            let letters = Letters { upwards: true, ..Letters::new(MEDIUM).at(Anchor::Middle) };
+            let letters = Letters { turn: -90.0, ..Letters::new(MEDIUM).at(Anchor::Middle) };
             for (number, line) in self.label_lines(frame.height).iter().enumerate() {
                 let x = MARGIN + (1.0 + LABEL_LINE * number as f64) * MEDIUM;
                 let line = cut(line, MEDIUM, frame.height + 4.0);
