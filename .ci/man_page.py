@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Prints the man page of a program `billow`, from the help of its commands:  man_page.py BILLOW"""
 
+import re
 import subprocess
 import sys
 
@@ -19,14 +20,14 @@ def main():
     version = output("--version").split()[1]
     overview = output("--help")
     about = overview.splitlines()[0].rstrip(".").replace("\\", "\\e")
-    listed = overview.split("Commands:\n")[1].split("\n\n")[0].splitlines()
-    commands = [line.split()[0] for line in listed if line.startswith("  ") and not line.startswith("   ")]
+    # Groups of commands stand before the options, each command as "  name  what it does".
+    commands = re.findall(r"^  ([a-z]+) ", overview.split("\nOptions:\n")[0], re.MULTILINE)
+    assert "run" in commands, overview
     print(f'.TH BILLOW 1 "" "billow {version}" "User Commands"')
     print(f".SH NAME\nbillow \\- {about}")
     print(".SH OVERVIEW\n" + verbatim(overview))
     for command in commands:
-        if command != "help":
-            print(f".SH BILLOW {command.upper()}\n" + verbatim(output(command, "--help")))
+        print(f".SH BILLOW {command.upper()}\n" + verbatim(output(command, "--help")))
 
 
 if __name__ == "__main__":
