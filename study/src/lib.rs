@@ -14,6 +14,7 @@
 //! | folder | holds |
 //! |---|---|
 //! | [`cli`] | the command line |
+//! | [`print`] | rows, answers and notes as people read them |
 //! | [`chart`] | charts of stored results |
 //! | [`render`] | pictures: SVG and PNG |
 //! | [`analysis`] | comparisons, statistics, the answer of a study |
@@ -43,6 +44,7 @@ pub mod cluster;
 pub mod input;
 pub mod job;
 pub mod platform;
+pub mod print;
 pub mod render;
 pub mod run;
 pub mod scene;

@@ -34,7 +34,7 @@ const ROOMS: [(&str, &[&str]); 3] = [
         "study",
         &[
             "platform", "input", "job", "accuracy", "study", "store", "run", "cluster", "scene",
-            "analysis", "render", "chart", "cli",
+            "analysis", "print", "render", "chart", "cli",
         ],
     ),
     ("tests/checks", &["output", "cases", "exact", "stability", "bench", "convergence"]),

@@ -19,7 +19,7 @@ import time
 from pathlib import Path
 
 # Bounds at 100,000 jobs: seconds, megabytes.
-BOUNDS = {"status": 3, "job": 3}
+BOUNDS = {"status": 3, "job": 3, "table": 3}
 MAX_MEGABYTES = 500
 # Values of the axes beside the mass flow rate: N, M.
 DESIGNS = 20

@@ -25,9 +25,9 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use billow_study::cli::Format;
-use billow_study::cli::print::print_rows;
 use billow_study::input::value::Value;
+use billow_study::print::Format;
+use billow_study::print::print_rows;
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use rayon::prelude::*;

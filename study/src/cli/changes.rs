@@ -91,8 +91,8 @@ pub fn note_before_run(results: &Results<'_>, study: &Study) -> Result<()> {
     let changes = between(&stored, study);
     if !changes.is_empty() {
         eprintln!(
-            "note: {} was last run for another form of this study ({}): its table follows this run; \
-             finished jobs of both are kept. --results DIR keeps both tables",
+            "note: {} was last run for another form of this study ({}): its table follows this run, \
+             until that form runs again; finished jobs of both are kept. --results DIR keeps both tables",
             results.root().display(),
             changes.join(", ")
         );

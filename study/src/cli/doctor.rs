@@ -4,12 +4,12 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use super::options::OutputOptions;
-use super::print::{count, print_rows};
 use super::results::{StudyArgs, folder};
 use super::{Format, output_error};
 use crate::input::value::Value;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error};
+use crate::print::{count, print_rows};
 use crate::store::doctor::repair::Repaired;
 use crate::store::doctor::{self, Finding};
 use crate::store::results::{RESULT_NAMES, Results};

@@ -4,10 +4,10 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::options::OutputOptions;
-use super::print::print_rows;
 use super::results::{self, StudyArgs};
 use crate::input::value::Value;
 use crate::platform::error::{Error, Result};
+use crate::print::print_rows;
 use crate::store::cube::{self, Written};
 
 /// Extensions of the file.

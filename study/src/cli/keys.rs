@@ -7,7 +7,6 @@ use serde_json::Serializer;
 use serde_json::ser::PrettyFormatter;
 
 use super::options::OutputOptions;
-use super::print::print_rows;
 use super::{Format, output_error};
 use crate::accuracy::PROMISED;
 use crate::input::keys::listing::{FileKind, KeyDescription, REQUIRED, entries};
@@ -17,6 +16,7 @@ use crate::job::row::COLUMNS;
 use crate::platform::error::{InputError, Result};
 use crate::platform::nearest::nearest;
 use crate::platform::quote;
+use crate::print::print_rows;
 
 /// Arguments of `billow keys`.
 #[derive(Debug, clap::Args)]
@@ -129,19 +129,19 @@ fn described(kind: &str, entry: &KeyDescription) -> String {
 type Test<'a> = &'a dyn Fn(&KeyDescription) -> bool;
 
 /// The keys with this name, else those with the word in their name, else the columns of the table with it in theirs,
-/// else the keys with it in their meaning.
+/// else the keys with it in their meaning, else the columns.
 fn search(file: FileKind, word: &str) -> Result<Vec<(&'static str, KeyDescription)>> {
     let lower = word.trim().to_lowercase();
     let (keys, columns) = (entries(file), columns());
-    let is_long = lower.chars().count() >= MIN_PART;
     // Another case of one letter is another key: N panels, n subdivisions.
-    let tests: [(&'static str, &[KeyDescription], Test<'_>); 6] = [
+    let tests: [(&'static str, &[KeyDescription], Test<'_>); 7] = [
         (file.name(), &keys, &|entry| entry.path == word || leaf(&entry.path) == word),
         (file.name(), &keys, &|entry| leaf(&entry.path).to_lowercase() == lower),
         (file.name(), &keys, &|entry| has_word(&entry.path, &lower)),
         (COLUMN, &columns, &|entry| entry.path == lower),
-        (COLUMN, &columns, &|entry| is_long && entry.path.contains(&lower)),
+        (COLUMN, &columns, &|entry| has_word(&entry.path, &lower)),
         (file.name(), &keys, &|entry| has_word(&entry.meaning, &lower)),
+        (COLUMN, &columns, &|entry| has_word(&entry.meaning, &lower)),
     ];
     for (kind, all, test) in tests {
         let found: Vec<_> = all.iter().filter(|entry| test(entry)).cloned().collect();
@@ -219,8 +219,7 @@ fn not_found(
         key: String::new(),
         value: String::new(),
         problem: format!(
-            "no key of a {} file has \"{shown}\" in its name or meaning, and no column of the table in \
-             its name",
+            "no key of a {} file and no column of the table has \"{shown}\" in its name or meaning",
             file.name()
         ),
         allowed: "a part of a name or of a meaning, as in billow keys thickness".to_owned(),

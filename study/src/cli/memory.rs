@@ -5,11 +5,11 @@ use std::num::NonZero;
 
 use billow_solver::scene::Scene;
 
-use super::print::count;
 use crate::job::memory;
 use crate::job::point::Point;
 use crate::platform::error::{Error, Result};
 use crate::platform::memory::{Limit, limits, size, smallest};
+use crate::print::count;
 use crate::study::Study;
 
 /// Names of jobs in a note, at most. Chosen: one line.

@@ -4,7 +4,6 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::options::OutputOptions;
-use super::print::count;
 use super::run::listed;
 use super::{Format, output_error};
 use crate::job::row::Counts;
@@ -12,6 +11,7 @@ use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, disk_error};
 use crate::platform::stop::Stop;
+use crate::print::count;
 use crate::run::merge::{self, Merged};
 use crate::store::results::Results;
 use crate::store::stored::Stored;

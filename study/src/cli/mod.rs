@@ -4,7 +4,6 @@
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::io::{self, Write};
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
@@ -14,8 +13,8 @@ use crate::platform::error::{Error, InputError, Result};
 use crate::platform::exit_code::{EXIT_CODES, Exit};
 use crate::platform::memory as process_memory;
 use crate::platform::output::Output;
+use crate::print::{Format, output_error};
 
-mod answer;
 mod changes;
 pub mod chart;
 mod compare;
@@ -27,25 +26,18 @@ mod frames;
 pub mod instruction_set;
 mod job;
 mod keys;
-mod legend;
 mod limits;
 mod memory;
 mod merge;
-mod notes;
 pub mod options;
 pub mod picture;
 mod plan;
-mod points;
-pub mod print;
-mod range;
 pub mod results;
 mod run;
 mod solve;
 mod status;
 mod submit;
 mod table;
-
-pub use options::Format;
 
 /// Parameter studies of inflatable capsules: fold, inflate, compare.
 #[derive(Debug, Parser)]
@@ -206,11 +198,4 @@ fn exit_codes_help() -> String {
         let _ = writeln!(text, "  {:<8} {}", code.number, code.brief);
     }
     text
-}
-
-/// The error of a failed write to stdout. A reader that closes it is no error: [`Output`].
-#[expect(clippy::needless_pass_by_value, reason = "the signature that map_err takes")]
-pub fn output_error(error: io::Error) -> Error {
-    let next = "the output is not complete; free some space, or write it to another file";
-    Error::Disk { path: PathBuf::from("stdout"), problem: format!("{error}\n  next: {next}") }
 }

@@ -4,11 +4,10 @@
 use std::num::NonZero;
 use std::path::PathBuf;
 
-use clap::ValueEnum;
-
 use crate::input::keys::{self, KEYS};
 use crate::input::units::{DisplayUnit, DisplayUnits};
 use crate::platform::error::{Error, Result};
+use crate::print::Format;
 use crate::run::progress::Loudness;
 use crate::store::table::Table;
 
@@ -143,17 +142,6 @@ impl OutputOptions {
     pub fn format(&self) -> Format {
         self.format_or(Format::Table)
     }
-}
-
-/// Format of the output.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Format {
-    /// Aligned columns.
-    Table,
-    /// Comma-separated values (RFC 4180).
-    Csv,
-    /// JSON.
-    Json,
 }
 
 /// Whether notes are printed.

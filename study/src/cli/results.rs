@@ -37,12 +37,17 @@ pub struct Opened {
     pub table: Table,
 }
 
-/// Opens the results that [`folder`] finds. Jobs that have not run yet are pending rows. The limits and units of a
-/// given study file hold; a message on stderr says in which keys it differs else.
+/// Opens the results that [`folder`] finds, with the table of [`Stored::first_rows`]. Jobs that have not run yet are
+/// pending rows. The limits and units of a given study file hold; a message on stderr says in which keys it differs else.
 ///
 /// # Errors
 /// When there are no results, or they cannot be read; units that do not fit.
-pub fn open(given: &StudyArgs, set: &[String], units: &UnitsOption) -> Result<Opened> {
+pub fn open(
+    given: &StudyArgs,
+    set: &[String],
+    units: &UnitsOption,
+    rows: Option<usize>,
+) -> Result<Opened> {
     let (root, asked) = locate(given, set)?;
     let mut stored = read(&root)?;
     if let (Some(asked), Some(path)) = (asked, &given.study) {
@@ -56,7 +61,7 @@ pub fn open(given: &StudyArgs, set: &[String], units: &UnitsOption) -> Result<Op
     if let Some(note) = changes::other_physics(&versions) {
         eprintln!("note: {note}");
     }
-    let table = stored.table();
+    let table = stored.first_rows(rows);
     stored.units = units.of_table(&table, &stored.units)?;
     let table = table.shown_in(&stored.units);
     Ok(Opened { stored, table })

@@ -8,8 +8,7 @@ use super::memory::Memory;
 use super::options::{
     OutputOptions, ProgressOptions, ResultsOption, SetOption, ThreadsOption, UnitsOption,
 };
-use super::print::{count, points_of_runs};
-use super::{Format, changes, memory, notes, output_error, results};
+use super::{Format, changes, memory, output_error, results};
 use crate::analysis::answer::Answer;
 use crate::job::executor::Solver;
 use crate::job::limits::JobLimits;
@@ -19,6 +18,8 @@ use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, disk_error};
 use crate::platform::stop::Stop;
+use crate::print::notes;
+use crate::print::{count, points_of_runs};
 use crate::run::progress;
 use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run, Summary};
 use crate::run::selection::{Part, Selection};
@@ -204,7 +205,7 @@ impl Ended<'_> {
                 "other_bits": summary.different.iter().map(JobId::as_str).collect::<Vec<_>>(),
             });
             if let (Some(keys), serde_json::Value::Object(more)) =
-                (json.as_object_mut(), super::answer::json(answer))
+                (json.as_object_mut(), crate::print::answer::json(answer))
             {
                 keys.extend(more);
             }
@@ -234,8 +235,8 @@ impl Ended<'_> {
             writeln!(out, "  bits     {} the same as before", count(summary.same, "job"))?;
         }
         writeln!(out, "  results  {}", root.display())?;
-        super::answer::print(answer, out)?;
-        super::answer::print_next(answer, root, out)
+        crate::print::answer::print(answer, out)?;
+        crate::print::answer::print_next(answer, root, out)
     }
 }
 

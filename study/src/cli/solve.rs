@@ -7,12 +7,12 @@ use std::time::{Duration, Instant};
 use billow_solver::geometry::mesh_io::obj;
 
 use super::options::{OutputOptions, QuietOption, SetOption};
-use super::print::print_rows;
 use super::{Format, instruction_set, output_error};
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, check_output_path, disk_error, write_output};
 use crate::platform::stop::Stop;
+use crate::print::print_rows;
 use crate::scene::file::SceneFile;
 use crate::scene::solve::{self, Ended, Pauses, Solved};
 use crate::scene::summary;

@@ -7,7 +7,6 @@ use std::num::NonZero;
 use serde_json::json;
 
 use super::options::{OutputOptions, ThreadsOption};
-use super::print::{TopicLine, count, duration, points_of_runs, print_rows};
 use super::results::{StudyArgs, folder};
 use super::run::listed;
 use super::{Format, changes, output_error};
@@ -19,6 +18,7 @@ use crate::job::{JobId, Status as JobStatus};
 use crate::platform::error::Result;
 use crate::platform::files::Disk;
 use crate::platform::quote;
+use crate::print::{TopicLine, count, duration, points_of_runs, print_rows};
 use crate::scene::summary;
 use crate::store::journal::{Fault, Record};
 use crate::store::results::Results;
@@ -257,7 +257,7 @@ impl<'a> Status<'a> {
 
     /// The first fault of the journal, or that there is none.
     fn broken(&self) -> String {
-        let Some(first) = self.faults.first() else { return "no line of the journal".to_owned() };
+        let Some(first) = self.faults.first() else { return "nothing of the journal".to_owned() };
         let more = match self.faults.len() - 1 {
             0 => String::new(),
             more => format!(", and {more} more"),

@@ -5,7 +5,6 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::options::{OutputOptions, ResultsOption, SetOption};
-use super::print::{count, duration};
 use super::{Format, output_error, results};
 use crate::cluster::script::{Needs, Scripts};
 use crate::cluster::slurm;
@@ -16,6 +15,7 @@ use crate::job::cost::Costs;
 use crate::job::memory::estimate;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, disk_error};
+use crate::print::{count, duration};
 use crate::run::merge;
 use crate::store::results::Results;
 use crate::store::stored;

@@ -100,6 +100,12 @@ impl<'a> Stored<'a> {
         self.built(&self.points)
     }
 
+    /// The table of all rows; where rows stand alone, of the first points alone that have this number of rows.
+    pub fn first_rows(&self, rows: Option<usize>) -> Table {
+        let rows = rows.filter(|_| self.study.rows_stand_alone()).unwrap_or(usize::MAX);
+        self.built(&self.points[..rows.min(self.points.len())])
+    }
+
     /// The table of one job: a row for each of its points. `None` for a job that no row shows.
     pub fn table_of(&self, id: &JobId) -> Option<Table> {
         let point = self.point(id)?;

@@ -28,6 +28,7 @@ use std::path::Path;
 
 use crate::input::json::Json;
 use crate::input::keys::STUDY;
+use crate::input::keys::numerical::is_numerical;
 use crate::input::overrides;
 use crate::input::settings::Settings;
 use crate::input::source::Source;
@@ -209,6 +210,15 @@ impl Study {
         let ends = if self.replicate_count() > 1 { 2 } else { 1 };
         let search = self.grid.search.as_ref()?;
         Some(search.scan().len() + ends * search.most_values_after_scan())
+    }
+
+    /// Whether no row of its table depends on another one: it has a product of axes alone, without replicates and
+    /// numerical choices.
+    pub fn rows_stand_alone(&self) -> bool {
+        let Grid { columns, axes, points, search, .. } = &self.grid;
+        let is_plain =
+            search.is_none() && points.is_empty() && !axes.iter().any(|a| a.kind.repeats());
+        is_plain && !columns.iter().any(|column| is_numerical(&column.name))
     }
 
     /// The limits of its jobs.

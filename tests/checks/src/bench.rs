@@ -19,12 +19,12 @@ use billow_solver::output::outcome::Stop;
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::platform::stopwatch::{Stage, Stopwatch, Untimed};
 use billow_solver::scene::timeline::Timeline;
-use billow_study::cli::print::print_rows;
-use billow_study::cli::{Format, instruction_set, output_error};
+use billow_study::cli::instruction_set;
 use billow_study::input::value::Value;
 use billow_study::platform::error::{Error, Result};
 use billow_study::platform::files::{Disk, Files};
 use billow_study::platform::{memory, provenance};
+use billow_study::print::{Format, output_error, print_rows};
 use billow_study::scene::file::SceneFile;
 
 use crate::cases::rig::stopped;

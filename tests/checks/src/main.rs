@@ -4,10 +4,11 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use billow_checks::{bench, cases, convergence, exact, stability};
-use billow_study::cli::{output_error, refused_line};
+use billow_study::cli::refused_line;
 use billow_study::platform::error::Result;
 use billow_study::platform::exit_code::Exit;
 use billow_study::platform::output::{self, Output};
+use billow_study::print::output_error;
 use clap::{Parser, Subcommand};
 
 /// Checks of the solver of billow: is it right, how exact, how fast, and where does it fail?

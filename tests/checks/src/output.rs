@@ -1,10 +1,10 @@
 //! What the checks share beside the printer of billow: options, and entries chosen by name.
 
-use billow_study::cli::Format;
 use billow_study::cli::options::{OutputOptions, QuietOption};
 use billow_study::platform::error::{Error, Result};
 use billow_study::platform::nearest::did_you_mean;
 use billow_study::platform::output;
+use billow_study::print::Format;
 
 /// The options of every command.
 #[derive(Debug, clap::Args)]

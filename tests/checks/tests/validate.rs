@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use billow_checks::cases::{CASES, Rig, command};
 use billow_solver::platform::fault_injection::{Fault, Term};
-use billow_study::cli::Format;
 use billow_study::platform::exit_code::Exit;
+use billow_study::print::Format;
 use serde_json::Value;
 
 use crate::support::{Folder, stderr};

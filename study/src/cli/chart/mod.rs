@@ -5,7 +5,6 @@ use std::path::PathBuf;
 
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::picture::{self, Picture, refused};
-use super::print::print_rows;
 use super::results::{self, StudyArgs};
 use super::{Format, output_error};
 use crate::analysis::replicates::Condensed;
@@ -18,6 +17,7 @@ use crate::input::value::Value;
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error};
+use crate::print::print_rows;
 use crate::store::results::Results;
 use crate::store::table::{Table, select};
 use crate::study::Study;
@@ -160,7 +160,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             return Err(refused("--title", title, "one title for several charts", one));
         }
     }
-    let mut opened = results::open(&args.study, &args.set.set, &args.units)?;
+    let mut opened = results::open(&args.study, &args.set.set, &args.units, None)?;
     if args.work_precision {
         let cost = args.cost.unwrap_or_default();
         return work_precision::run(&opened, cost, args.output.format(), out);

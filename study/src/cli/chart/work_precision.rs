@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use billow_solver::output::events::EventKind;
 
-use super::super::print::print_rows;
 use super::super::results::Opened;
 use super::super::{Format, output_error};
 use crate::analysis::work_precision::table::{COURSES, Histories, scenes};
@@ -15,7 +14,8 @@ use crate::chart::work_precision as pictures;
 use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::value::Value;
 use crate::job::JobId;
-use crate::platform::error::Result;
+use crate::platform::error::{Error, Result};
+use crate::print::print_rows;
 use crate::store::history_file::StoredHistory;
 
 /// The cost of a diagram.
@@ -70,6 +70,14 @@ pub fn run(opened: &Opened, cost: CostName, format: Format, out: &mut dyn Write)
     replicates.retain(|name| name != MESH_PARAMETER);
     let scenes = scenes(&study.name, table, &replicates, &read);
     let diagrams: Vec<Diagram> = scenes.into_iter().map(Diagram::of).collect();
+    let mut points =
+        diagrams.iter().flat_map(|diagram| &diagram.quantities).flat_map(|q| &q.points);
+    if !points.any(|point| point.as_ref().is_some_and(|point| !point.is_reference)) {
+        let problem = "compares methods, and no scene of this study has results of two";
+        let allowed = "a study that varies solver.model, solver.integrator, solver.cfl or design.subdivisions";
+        let next = "studies/pareto.json is an example";
+        return Err(Error::invalid_option("--work-precision", &study.name, problem, allowed, next));
+    }
     let (cost, ending) = match cost {
         CostName::Work => (Cost::Work, ""),
         CostName::Seconds => (Cost::Seconds, "-seconds"),

@@ -3,8 +3,6 @@
 use std::io::Write;
 
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
-use super::points::chosen_runs;
-use super::print::{is_part, print_table};
 use super::results::{self, Opened, StudyArgs};
 use super::{Format, output_error};
 use crate::analysis::compare::{self, Comparison, Measure, Sets, Tolerance, measures_with};
@@ -15,6 +13,8 @@ use crate::job::Status;
 use crate::job::row::{BetterSide, DerivedColumn};
 use crate::platform::error::{Error, Result};
 use crate::platform::nearest::did_you_mean;
+use crate::print::points::chosen_runs;
+use crate::print::{is_part, print_table};
 use crate::store::stored::Stored;
 use crate::store::table::select::find;
 use crate::store::table::{Column, Table};
@@ -84,7 +84,7 @@ pub struct Args {
 /// An unknown parameter, value, measure or column; results that cannot be read.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let condition = args.condition.as_deref();
-    let mut opened = results::open(&args.study, &args.set.set, &args.units)?;
+    let mut opened = results::open(&args.study, &args.set.set, &args.units, None)?;
     opened.add_keys(&[], condition);
     let Opened { stored, table } = opened;
     let Some(base) = &args.base else { return rank::run(args, &stored, &table, out) };

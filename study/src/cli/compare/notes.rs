@@ -5,11 +5,11 @@ use std::fmt::Write as _;
 
 use crate::analysis::compare::{Comparison, ToleranceSource, pairs_of_jobs};
 use crate::analysis::replicates::is_mesh;
-use crate::cli::legend;
-use crate::cli::print::count;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::row::BetterSide;
+use crate::print::count;
+use crate::print::legend;
 use crate::store::table::Table;
 
 /// What a cell of a point holds.

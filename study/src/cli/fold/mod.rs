@@ -9,7 +9,6 @@ use billow_solver::geometry::mesh_io::{fold as fold_text, obj};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::options::{OutputOptions, QuietOption};
-use super::print::print_rows;
 use super::{Format, output_error};
 use crate::input::json::Json;
 use crate::input::keys::{self, CAPS, CHIRALITIES, FITS, Named};
@@ -17,6 +16,7 @@ use crate::input::value::Value;
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files::{Disk, Files, disk_error, write_output};
 use crate::platform::memory;
+use crate::print::print_rows;
 use crate::render::crease_pattern;
 
 mod answer;

@@ -9,13 +9,13 @@ use clap::ValueEnum;
 
 use super::options::{OutputOptions, QuietOption};
 use super::picture::{self, Picture, refused};
-use super::print::print_rows;
 use super::results::{StudyArgs, folder_of_job};
 use crate::chart::parameters::Parameter;
 use crate::input::value::Value;
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error};
+use crate::print::print_rows;
 use crate::render::filmstrip::{Colour, Filmstrip};
 use crate::render::projection::View;
 use crate::store::history_file::{self, StoredFrames};

@@ -3,11 +3,11 @@
 use billow_solver::output::outcome::FailureKind;
 
 use super::Inspected;
-use crate::cli::print::TopicLine;
 use crate::input::value::brief_number;
 use crate::job::Status;
 use crate::job::row::ColumnId;
 use crate::job::suggestions::is_without_motion;
+use crate::print::TopicLine;
 
 /// Lines of a failed or infeasible job, and the next step.
 pub(super) fn explanation(job: &Inspected) -> (Vec<TopicLine>, String) {

@@ -4,11 +4,11 @@ use std::io::Write;
 
 use super::{Args, Inspected, si_unit};
 use crate::cli::Format;
-use crate::cli::print::print_table;
 use crate::input::value::Value;
 use crate::job::row::CellType;
 use crate::platform::error::{Error, Result};
 use crate::platform::nearest::did_you_mean;
+use crate::print::print_table;
 use crate::store::table::{Column, Table};
 
 /// Columns of a table by default.

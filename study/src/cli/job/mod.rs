@@ -9,7 +9,6 @@ use serde_json::{Map, json};
 
 use super::limits;
 use super::options::{OutputOptions, QuietOption, UnitsOption};
-use super::print::{TopicLine, print_rows};
 use super::results::{self, StudyArgs, folder_of_job};
 use super::{Format, output_error};
 use crate::accuracy::PROMISED;
@@ -18,6 +17,7 @@ use crate::job::row::{COLUMNS, Cells, ColumnId};
 use crate::job::suggestions::{Suggestion, suggestions};
 use crate::job::{JobId, Status};
 use crate::platform::error::Result;
+use crate::print::{TopicLine, print_rows};
 use crate::scene::summary;
 use crate::store::stored::Stored;
 

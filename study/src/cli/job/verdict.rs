@@ -3,9 +3,9 @@
 use billow_solver::output::measures::Verdict;
 
 use super::{Inspected, percent};
-use crate::cli::print::TopicLine;
 use crate::input::value::{Value, brief_number};
 use crate::job::row::{Cells, ColumnId};
+use crate::print::TopicLine;
 
 /// Relative change of the volume over the last tenth of a run above which the film still moves. Chosen:
 /// well above the ringing of a deployed capsule.

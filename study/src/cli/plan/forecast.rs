@@ -2,10 +2,10 @@
 
 use billow_solver::scene::ModelKind;
 
-use crate::cli::print::{count, duration};
 use crate::input::value::short_number;
 use crate::job::cost::Costs;
 use crate::job::point::Point;
+use crate::print::{count, duration};
 
 /// Most meshes that are built for an estimate.
 const MAX_MESHES: usize = 100;

@@ -11,11 +11,10 @@ mod results;
 
 use forecast::forecast;
 
+use super::changes;
 use super::memory::Memory;
 use super::options::{OutputOptions, QuietOption, ResultsOption, SetOption, UnitsOption};
-use super::print::{self, print_table};
 use super::results::results_folder;
-use super::{changes, notes};
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Parameters;
@@ -23,6 +22,7 @@ use crate::job::point::Point;
 use crate::job::row::CellType;
 use crate::platform::error::Result;
 use crate::platform::files::Disk;
+use crate::print::{self, notes, output_error, print_table};
 use crate::store::results::Results;
 use crate::store::stored::other_physics;
 use crate::store::table::{Column, Table};
@@ -60,6 +60,8 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let Some(generation) = next_jobs(&study, &[]) else { return Ok(()) };
     let counts = PlanCounts::of(&study, &generation);
     print_points(args, &study, &generation, out)?;
+    // What follows on stderr stands below.
+    out.flush().map_err(output_error)?;
     if !args.quiet.quiet {
         eprintln!("{}: {}", study.name, summary(&study, &counts));
         print_progress_and_forecast(args, &study, &generation)?;

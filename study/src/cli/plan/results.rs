@@ -2,9 +2,9 @@
 
 use billow_solver::scene::ModelKind;
 
-use crate::cli::print::count;
 use crate::input::keys::MODELS;
 use crate::job::row::ColumnId;
+use crate::print::count;
 use crate::study::Study;
 use crate::study::plan::{PlanCounts, borders};
 
@@ -33,9 +33,10 @@ fn search(study: &Study, counts: &PlanCounts) -> Option<String> {
     let begins = searches.iter().map(|border| border.levels.len()).max().unwrap_or(0);
     let more = study.most_search_values()?.saturating_sub(begins) * study.replicate_count();
     Some(format!(
-        "search: {} along {name}; first generation {}; up to {more} more per search",
+        "search: {} along {name}; first generation {}; up to {} more in all",
         count(searches.len(), "search"),
         count(counts.jobs, "job"),
+        more * searches.len(),
     ))
 }
 

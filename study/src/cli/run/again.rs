@@ -6,7 +6,6 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::{Args, run_study};
-use crate::cli::print::{count, print_rows};
 use crate::input::keys::{self, KEYS};
 use crate::input::value::Value;
 use crate::job::point::Point;
@@ -14,6 +13,7 @@ use crate::job::row::{Cells, ColumnId};
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::Disk;
+use crate::print::{count, print_rows};
 use crate::run::selection::Selection;
 use crate::store::results::Results;
 use crate::store::stored::Stored;

@@ -7,10 +7,10 @@ use std::path::Path;
 use billow_solver::output::outcome::FailureKind;
 
 use super::listed;
-use crate::cli::print::count;
 use crate::job::limits::JobLimits;
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
+use crate::print::count;
 use crate::run::runner::Summary;
 use crate::study::Study;
 

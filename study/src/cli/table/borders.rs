@@ -5,9 +5,9 @@ use std::io::Write;
 use super::Args;
 use crate::analysis::answer::Searches;
 use crate::cli::Format;
-use crate::cli::print::{count, print_table};
 use crate::cli::results::{self, Opened};
 use crate::platform::error::{Error, Result};
+use crate::print::{count, print_table};
 use crate::store::table::Column;
 use crate::store::table::select::filtered;
 
@@ -19,7 +19,7 @@ const OPTIONAL: [&str; 5] = ["changes", "limit", "not_decided", "not_judged", "o
 /// # Errors
 /// Results that cannot be read; a study without a search; an invalid condition.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let Opened { stored, table } = results::open(&args.study, &args.set.set, &args.units)?;
+    let Opened { stored, table } = results::open(&args.study, &args.set.set, &args.units, None)?;
     let Some(searches) = Searches::of(&stored, &table) else {
         let name = stored.study.name.as_str();
         let allowed = "an axis of the grid as {\"bisect\": [low, high], \"on\": \"verdict\", \"safe\" or a limit}";

@@ -2,10 +2,10 @@
 
 use super::{Args, MAX_LINE_WIDTH, MAX_WIDE_LINE_WIDTH, sorting};
 use crate::cli::Format;
-use crate::cli::points::{DEPLOYED, RUNS};
-use crate::cli::print::{is_part, width};
 use crate::job::row::{ColumnId, DerivedColumn};
 use crate::platform::error::{Error, Result};
+use crate::print::points::{DEPLOYED, RUNS};
+use crate::print::{is_part, width};
 use crate::store::table::select;
 use crate::store::table::{Column, Table};
 

@@ -2,16 +2,17 @@
 
 use std::io::Write;
 
+use super::Format;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
-use super::points::{PointTable, chosen_runs};
-use super::print::print_table;
 use super::results::{self, Opened, StudyArgs};
-use super::{Format, legend, notes};
 use crate::accuracy::error_column;
 use crate::input::keys::numerical::SEED;
 use crate::input::value::Value;
 use crate::job::row::{ColumnId, SAME_JOB_AS};
 use crate::platform::error::Result;
+use crate::print::points::{PointTable, chosen_runs};
+use crate::print::print_table;
+use crate::print::{legend, notes};
 use crate::store::table::{Column, Table};
 use crate::study::Study;
 use sort::{by_search, sorted};
@@ -74,7 +75,8 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     if args.borders {
         return borders::run(args, out);
     }
-    let mut opened = results::open(&args.study, &args.set.set, &args.units)?;
+    let first = args.limit.filter(|_| args.condition.is_none() && args.sort.is_empty());
+    let mut opened = results::open(&args.study, &args.set.set, &args.units, first)?;
     let stored_columns = opened.table.columns.len();
     opened.add_keys(&asked(args), args.condition.as_deref());
     let Opened { stored, table } = opened;
@@ -108,9 +110,10 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     if args.quiet.quiet {
         return Ok(());
     }
-    let left_out = order.len() - printed.len();
+    let stand_alone = first.is_some() && stored.study.rows_stand_alone();
+    let all = if stand_alone { stored.planned_runs() } else { order.len() };
+    let left_out = all - printed.len();
     if left_out > 0 {
-        let all = order.len();
         eprintln!("{} of {all} rows: --limit leaves out {left_out}", printed.len());
     }
     if format == Format::Table {

@@ -191,7 +191,7 @@ columns! {
         "t_deployed minus the time at which the lid is released; equal to t_deployed without a lid"
         end => end.since_release(|measures| measures.t_deployed);
     PeakVz "peak_vz" Number ["m/s"] Measures Smaller
-        "largest mean velocity of the top ring along z"
+        "largest upward speed of the top ring: mean velocity of its nodes along z"
         end => end.measure(|measures| measures.peak_vz);
     TPeakVz "t_peak_vz" Number ["s"] Measures Neither
         "time of peak_vz"

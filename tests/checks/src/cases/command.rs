@@ -2,11 +2,11 @@
 
 use std::io::Write;
 
-use billow_study::cli::Format;
 use billow_study::cli::options::ThreadsOption;
-use billow_study::cli::print::print_rows;
 use billow_study::input::value::Value;
 use billow_study::platform::error::{Error, Result};
+use billow_study::print::Format;
+use billow_study::print::print_rows;
 
 use super::{CASES, Case, Judged, Rig, Row, run_all};
 use crate::output::{Options, chosen};

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 
 use billow_study::accuracy::PROMISED;
 use billow_study::cli::options::ResultsOption;
-use billow_study::cli::print::print_rows;
 use billow_study::cli::results::{self, StudyArgs};
 use billow_study::input::value::Value;
 use billow_study::job::row::ColumnId;
 use billow_study::platform::error::{Error, Result};
 use billow_study::platform::files::{Disk, disk_error, write_output};
+use billow_study::print::print_rows;
 
 use super::calibrate::calibrate;
 use super::fit::{fit, levels};

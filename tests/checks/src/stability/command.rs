@@ -3,13 +3,13 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use billow_study::cli::Format;
 use billow_study::cli::options::ThreadsOption;
-use billow_study::cli::print::{count, print_rows};
 use billow_study::input::value::Value;
 use billow_study::job::Status;
 use billow_study::platform::error::{Error, Result};
 use billow_study::platform::files::{Disk, Files, disk_error, write_output};
+use billow_study::print::Format;
+use billow_study::print::{count, print_rows};
 
 use super::file::{self, Map};
 use super::map::{Border, FinishedMap, Placed};

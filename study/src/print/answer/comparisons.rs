@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 use crate::analysis::answer::Answer;
 use crate::analysis::compare::{Better, Tally};
 use crate::analysis::ranking::{Basis, Candidate, RankedMeasure, Ranking};
-use crate::cli::print::{MAX_VALUES, count};
 use crate::input::value::{Value, brief_number};
 use crate::job::row::{CellType, ColumnId, HEADLINE};
+use crate::print::{MAX_VALUES, count};
 
 /// One line per parameter.
 pub(super) fn lines(answer: &Answer) -> Vec<String> {
@@ -97,7 +97,7 @@ fn measured(ranking: &Ranking, index: usize, measure: &RankedMeasure) -> Option<
             Some(_) if measure.equal[position] => " (equal)".to_owned(),
             Some(tally) => against(tally),
         };
-        Some(format!("{name} {}{mark}", measure.column.shown.brief(median)))
+        Some(format!("{} with {name}{mark}", measure.column.shown.brief(median)))
     };
     let texts = listed(order.iter().filter_map(|position| text(*position)));
     let equal = if all_equal && measure.best == Some(first) {
@@ -105,7 +105,7 @@ fn measured(ranking: &Ranking, index: usize, measure: &RankedMeasure) -> Option<
     } else {
         String::new()
     };
-    Some(format!("{name}{equal} {texts}"))
+    Some(format!("median {name}{equal} {texts}"))
 }
 
 /// How a value stands to the best one, pair by pair.

@@ -1,8 +1,8 @@
 //! Lines of the answer on the searches of a border.
 
 use crate::analysis::answer::Searches;
-use crate::cli::print::count;
 use crate::input::value::Value;
+use crate::print::count;
 use crate::store::table::Column;
 use crate::study::SearchResult;
 

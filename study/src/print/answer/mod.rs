@@ -7,13 +7,13 @@ use std::path::Path;
 use billow_solver::output::audit::MAX_LEDGER_RESIDUAL;
 use billow_solver::output::measures::Verdict;
 
-use super::print::{count, wrapped};
 use crate::analysis::answer::{Answer, Extreme, Trust};
 use crate::analysis::ranking::Ranking;
 use crate::input::units::{self, Dimension};
 use crate::input::value::{Value, brief_number};
 use crate::job::Status;
 use crate::job::row::ColumnId;
+use crate::print::{count, wrapped};
 use crate::store::table::Column;
 
 mod border;

@@ -2,15 +2,41 @@
 //! that columns, rounding and empty cells look the same everywhere.
 
 use std::io::{self, IsTerminal, Write};
+use std::path::PathBuf;
 
-use super::{Format, output_error, range};
+use clap::ValueEnum;
+
 use crate::accuracy::error_column;
 use crate::input::value::{Value, brief_number, json_value};
 use crate::job::proportion::Proportion;
 use crate::job::row::CellType;
-use crate::platform::error::Result;
+use crate::platform::error::{Error, Result};
 use crate::store::table::{Column, Table};
 use crate::study::Study;
+
+pub mod answer;
+pub mod legend;
+pub mod notes;
+pub mod points;
+mod range;
+
+/// Format of the output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// Aligned columns.
+    Table,
+    /// Comma-separated values (RFC 4180).
+    Csv,
+    /// JSON.
+    Json,
+}
+
+/// The error of a failed write to stdout. A reader that closes it is no error: [`crate::platform::output::Output`].
+#[expect(clippy::needless_pass_by_value, reason = "the signature that map_err takes")]
+pub fn output_error(error: io::Error) -> Error {
+    let next = "the output is not complete; free some space, or write it to another file";
+    Error::Disk { path: PathBuf::from("stdout"), problem: format!("{error}\n  next: {next}") }
+}
 
 /// Most characters in a line.
 const MAX_LINE_WIDTH: usize = 120;
@@ -18,7 +44,7 @@ const MAX_LINE_WIDTH: usize = 120;
 pub const MAX_VALUES: usize = 6;
 
 /// A line of an explanation: its topic and its text.
-pub(super) type TopicLine = (&'static str, String);
+pub type TopicLine = (&'static str, String);
 
 /// A number of points with several runs each: "30 points of 5 runs", or "57 points, 256 runs" where a filter leaves some
 /// points fewer. `planned` counts every run. A study without replicates has points only, also one that gives a value twice.

@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 
 use super::job_text;
 use crate::analysis::answer::{PointCounts, SafeCounts, Safety, VerdictSensitivity};
-use crate::cli::print::count;
 use crate::input::value::brief_number;
 use crate::job::Status;
 use crate::job::row::Counts;
+use crate::print::count;
 
 /// Most limits that a line names as missed.
 const MAX_MISSED: usize = 3;

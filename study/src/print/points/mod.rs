@@ -1,6 +1,5 @@
 //! The points of a study with replicates: which runs a command reads, and one row per point.
 
-use super::print::shown_cells;
 use crate::analysis::compare::measured;
 use crate::analysis::replicates::{self, Condensed, Runs};
 use crate::input::value::Value;
@@ -8,6 +7,7 @@ use crate::input::{expression, keys};
 use crate::job::proportion::Proportion;
 use crate::job::row::{CellType, DerivedColumn};
 use crate::platform::error::Result;
+use crate::print::shown_cells;
 use crate::store::table::select::filtered;
 use crate::store::table::{Column, Table};
 use columns::{columns, keys_start};

@@ -4,8 +4,8 @@ use serde_json::{Value, json};
 
 use crate::analysis::answer::{Answer, Searches};
 use crate::analysis::ranking::Ranking;
-use crate::cli::print::json_objects;
 use crate::input::value::json_value;
+use crate::print::json_objects;
 
 /// The answer as JSON keys.
 pub fn json(answer: &Answer) -> Value {

@@ -3,10 +3,10 @@
 
 use std::fmt::Write as _;
 
-use super::print::count;
 use crate::accuracy::{NO_ERROR_REASON, PROMISED};
 use crate::analysis::replicates::is_mesh;
 use crate::input::value::Value;
+use crate::print::count;
 use crate::store::table::NOT_DEPLOYED;
 use crate::store::table::Table;
 
@@ -22,7 +22,7 @@ pub fn points(
     let names: Vec<&str> =
         replicates.iter().map(String::as_str).filter(|name| !is_mesh(name, meshes)).collect();
     let mut text = format!("{}, {}", count(points, "point"), count(runs, "run"));
-    if !names.is_empty() {
+    if !names.is_empty() && runs > points * meshes.len().max(1) {
         let _ = write!(text, " that differ in {}: {of_each}", names.join(", "));
     }
     if let Some((finest, coarser)) = meshes.split_last() {
