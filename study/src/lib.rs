@@ -14,7 +14,7 @@
 //! | folder | holds |
 //! |---|---|
 //! | [`cli`] | the command line |
-//! | [`print`] | rows, answers and notes as people read them |
+//! | [`mod@print`] | rows, answers and notes as people read them |
 //! | [`chart`] | charts of stored results |
 //! | [`render`] | pictures: SVG and PNG |
 //! | [`analysis`] | comparisons, statistics, the answer of a study |
