@@ -267,7 +267,6 @@ fn a_generation_depends_only_on_the_finished_rows() {
             status: Status::Done,
             verdict: None,
             met: Vec::new(),
-            promised: [None; 6],
         })
         .collect();
     assert_eq!(next_jobs(&study, &finished[..2]), Some(all.clone()));

@@ -88,12 +88,7 @@ impl Truth {
         for (job, times) in ended(&place.results()).iter().filter(|(_, times)| **times > 1) {
             trial.fault(format!("job {job} ran {times} times"));
         }
-        let is_temporary = |path: &&PathBuf| {
-            path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'))
-        };
-        if let Some(path) = files(&place.results()).iter().find(is_temporary) {
-            trial.fault(format!("{} remains", path.display()));
-        }
+        no_temporary_files(trial, place);
     }
 
     /// Adds a fault if the table shows a number of an ended job that is not the true one.
@@ -133,6 +128,16 @@ pub fn ended_job(line: &str) -> Option<String> {
     let line: Value = serde_json::from_str(line).ok()?;
     line["cells"]["status"].as_str()?;
     Some(line["job"].as_str()?.to_owned())
+}
+
+/// Adds a fault for a temporary file that remains.
+pub fn no_temporary_files(trial: &mut Trial, place: &Place) {
+    let is_temporary = |path: &&PathBuf| {
+        path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'))
+    };
+    if let Some(path) = files(&place.results()).iter().find(is_temporary) {
+        trial.fault(format!("{} remains", path.display()));
+    }
 }
 
 /// Jobs that are recorded as ended, and how often since they were last asked to run again. A record

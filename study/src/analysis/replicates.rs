@@ -9,6 +9,7 @@
 //! the run with the smallest margin, `verdict_depends_on` that of the first run that has one.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use billow_solver::output::measures::Verdict;
 
@@ -27,11 +28,11 @@ use crate::store::table::{Column, Table, extrapolated};
 pub struct Condensed {
     /// The medians. Its parameters are those of the study without the replicates; `job` is that of the first
     /// run.
-    pub table: Table,
+    pub table: Arc<Table>,
     /// The same table with the smallest values.
-    pub least: Table,
+    pub least: Arc<Table>,
     /// The same table with the largest values.
-    pub largest: Table,
+    pub largest: Arc<Table>,
     /// The runs of each row.
     pub runs: Vec<Runs>,
 }
@@ -76,13 +77,13 @@ impl Condensed {
     pub fn of(table: &Table, rows: &[usize], replicates: &[String]) -> Self {
         let runs: Vec<Runs> =
             groups(table, rows, replicates).into_iter().map(|rows| Runs::of(table, rows)).collect();
-        let with = |statistic| condensed(table, &runs, replicates, statistic);
-        Self {
-            table: with(Statistic::Median),
-            least: with(Statistic::Least),
-            largest: with(Statistic::Largest),
-            runs,
-        }
+        let with = |statistic| Arc::new(condensed(table, &runs, replicates, statistic));
+        let table = with(Statistic::Median);
+        // A single run is its median, its least and its largest one.
+        let is_single = runs.iter().all(|runs| runs.measured.len() < 2);
+        let of = |statistic| if is_single { Arc::clone(&table) } else { with(statistic) };
+        let (least, largest) = (of(Statistic::Least), of(Statistic::Largest));
+        Self { table, least, largest, runs }
     }
 
     /// Least, median and largest value of a measure at a row; `None` where no run has one.

@@ -323,10 +323,14 @@ pub fn json_objects(table: &Table) -> Vec<serde_json::Value> {
     (0..table.rows()).map(object).collect()
 }
 
-/// Breaks a line at its semicolons so that it fits beside `indent` characters.
+/// Breaks a line at its semicolons, and where they are too far apart at its commas, so that it fits beside `indent`
+/// characters.
 pub fn wrapped(line: &str, indent: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    for part in line.split_inclusive("; ") {
+    let is_long = |part: &str| indent + part.trim_end().chars().count() > MAX_LINE_WIDTH;
+    let parts = line.split_inclusive("; ");
+    for part in parts.flat_map(|part| part.split_inclusive(if is_long(part) { ", " } else { "; " }))
+    {
         let length = part.trim_end().chars().count();
         match lines.last_mut() {
             Some(last) if indent + last.chars().count() + length <= MAX_LINE_WIDTH => {

@@ -2,7 +2,6 @@
 
 use billow_solver::output::measures::Verdict;
 
-use crate::accuracy::PROMISED;
 use crate::job::result_limit::ResultLimit;
 use crate::job::row::Cells;
 use crate::job::{JobId, Status};
@@ -18,8 +17,6 @@ pub struct FinishedRow {
     pub verdict: Option<Verdict>,
     /// For each limit of the study whether it is met, where that can be said.
     pub met: Vec<Option<bool>>,
-    /// The promised measures of a trusted run; the state at the end only where the capsule is deployed.
-    pub promised: [Option<f64>; PROMISED.len()],
 }
 
 impl FinishedRow {
@@ -29,12 +26,6 @@ impl FinishedRow {
         let met = limits
             .iter()
             .map(|limit| limit.judge(status, cells.get(limit.measure)).map(|judged| judged.met));
-        let verdict = cells.verdict();
-        let deployed = verdict == Some(Verdict::Deployed);
-        let promised = PROMISED.map(|promised| {
-            let counts = cells.is_trusted() && (deployed || !promised.is_at_end());
-            cells.number(promised.measure).filter(|_| counts)
-        });
-        Self { id: id.clone(), status, verdict, met: met.collect(), promised }
+        Self { id: id.clone(), status, verdict: cells.verdict(), met: met.collect() }
     }
 }

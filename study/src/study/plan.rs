@@ -63,26 +63,25 @@ impl PlanCounts {
 /// study of infeasible points gets its rows.
 pub fn next_jobs(study: &Study, finished: &[FinishedRow]) -> Option<Generation> {
     let ids: BTreeSet<&JobId> = finished.iter().map(|row| &row.id).collect();
-    let is_open = |generation: &Generation| {
-        let mut jobs = generation.points.iter().filter(|point| point.infeasible.is_none());
+    let is_open = |points: &[Point]| {
+        let mut jobs = points.iter().filter(|point| point.infeasible.is_none());
         jobs.any(|point| !ids.contains(&point.job.id))
     };
-    let mut generation = generation(0, study.points());
-    if is_open(&generation) || finished.is_empty() {
-        return Some(generation);
+    if is_open(study.points()) || finished.is_empty() {
+        return Some(generation(0, study.points()));
     }
     let mut replay = Replay::new(study, finished)?;
-    loop {
+    for number in 1.. {
         let points = replay.next_points();
         if points.is_empty() {
-            return None;
+            break;
         }
-        generation = self::generation(generation.number + 1, &points);
-        if is_open(&generation) {
-            return Some(generation);
+        if is_open(&points) {
+            return Some(generation(number, &points));
         }
         replay.add(&points);
     }
+    None
 }
 
 /// Adds a generation to the points planned before. A job that is planned already keeps its place and its

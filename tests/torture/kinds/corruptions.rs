@@ -268,7 +268,8 @@ fn same_process_id(kind: &Corruptions, trial: &mut Trial, place: &Place) {
     );
     let finish = place.start(place.shell(&script)).finish();
     trial.check("run", &finish, &[0]);
-    kind.truth.finish(trial, place);
+    kind.truth.compare(trial, place);
+    check::no_temporary_files(trial, place);
 }
 
 /// A folder on a disk that is mounted read-only.

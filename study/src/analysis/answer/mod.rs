@@ -100,6 +100,8 @@ impl Answer {
         let jobs = Condensed::of(table, &table.one_row_per_job(&rows), &replicates);
         answer.points = (!replicates.is_empty()).then(|| PointCounts::of(&jobs, &replicates));
         answer.sensitivity = VerdictSensitivity::of(table, &jobs);
+        // A large study needs the memory.
+        drop(jobs);
         answer.safety = Safety::of(table, study.result_limits(), &rows, &replicates);
         answer.comparisons = comparisons(table, &rows, study);
         answer.searches = Searches::of(stored, table);
