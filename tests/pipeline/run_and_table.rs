@@ -100,6 +100,11 @@ fn table_selects_sorts_and_filters() {
     }
     let all = folder.stdout(&["table", "results/grid", "--columns", "all", "--format", "csv"]);
     assert_eq!(all, csv(&[]));
+    // The first rows alone are built, and are those of the whole table.
+    let first: Vec<&str> = all.lines().take(8).collect();
+    assert_eq!(csv(&["--limit", "7"]).lines().collect::<Vec<_>>(), first);
+    let limited = stderr(&folder.run(&["table", "--limit", "7"]));
+    assert!(limited.contains("7 of 24 rows: --limit leaves out 17"), "{limited}");
 }
 
 #[test]
