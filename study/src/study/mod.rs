@@ -5,6 +5,11 @@
 //! text → Json → (--set) → Settings + Grid → points: parameters, Scene, feasible or why not
 //! ```
 //! Every error of a study is found here, before anything runs.
+//!
+//! A value of the grid, from text to scene: `grid/read.rs` reads it with its unit, by the key of its axis
+//! (`input/keys/key.rs`); `expand.rs` sets it in the settings of each point; `resolve.rs` makes the scene of these
+//! settings, and `inflow.rs` its inflow windows. A study without strategies has one, `direct`, with one window, which
+//! takes the values of section `gas`.
 
 mod column;
 mod expand;

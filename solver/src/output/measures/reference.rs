@@ -2,11 +2,11 @@
 //!
 //! ```text
 //! design shape   at the overpressure p with p r/(E t) = 1e-4      levels of the times
-//! end shape      at the final overpressure: mean over the last tenth of the run      ratios, verdict
+//! final shape    at the final overpressure: mean over the last tenth of the run      ratios, verdict
 //! ```
 //!
 //! Symbols: r mean radius of the rings, E Young's modulus, t thickness. The design shape is the same
-//! whatever gas a run gets, so equal motion has equal times. The end shape is that of the gas that the
+//! whatever gas a run gets, so equal motion has equal times. The final shape is that of the gas that the
 //! run really has, so film that stretches is compared with stretched film.
 
 use crate::output::history::History;

@@ -1,7 +1,7 @@
 //! The verdict: did the capsule deploy?
 //!
-//! It compares the last tenth of the run with the static equilibrium at its mean overpressure, in this
-//! order:
+//! It compares the last tenth of the run with the static equilibrium at its mean overpressure (of
+//! film by its ladder, after the run), in this order:
 //!
 //! - deployed, if V and `z_rim` stay at or above their thresholds throughout;
 //! - stalled, if the mean V is below its threshold;

@@ -290,10 +290,10 @@ columns! {
         "z_rim of the static equilibrium at p r/(E t) = 1e-4, r mean radius"
         end => end.measure(|measures| measures.design_height);
     DeployedVolumeThreshold "deployed_volume_threshold" Number ["1"] Outcome Neither
-        "volume_ratio that a deployed run needs"
+        "V/V_ref that a deployed run keeps throughout its last tenth"
         end => end.threshold(|thresholds| thresholds.deployed_volume);
     DeployedHeightThreshold "deployed_height_threshold" Number ["1"] Outcome Neither
-        "height_ratio that a deployed run needs"
+        "z_rim/H_ref that a deployed run keeps throughout its last tenth"
         end => end.threshold(|thresholds| thresholds.deployed_height);
     StalledVolumeThreshold "stalled_volume_threshold" Number ["1"] Outcome Neither
         "volume_ratio below which a run is stalled"
