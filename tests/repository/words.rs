@@ -124,7 +124,7 @@ const MAX_LINE: usize = 120;
 const MAX_LINES: [(&str, usize); 6] = [
     ("README.md", 90),
     ("DESIGN.md", 110),
-    ("CONTRIBUTING.md", 110),
+    ("CONTRIBUTING.md", 120),
     ("docs/guide/", 120),
     ("docs/theory/", 120),
     ("docs/decisions/0", 40),
@@ -142,7 +142,9 @@ fn documents_keep_their_limits() {
         let most = MAX_LINES.iter().find(|(start, _)| name.starts_with(start));
         let count = page.lines().count();
         if let Some((_, most)) = most.filter(|(_, most)| count > *most) {
-            found.push(format!("{name}: {count} lines; at most {most}"));
+            found.push(format!(
+                "{name}: {count} lines; at most {most}: say it shorter, or on another page"
+            ));
         }
         let mut is_code = false;
         for (number, line) in (1..).zip(page.lines()) {

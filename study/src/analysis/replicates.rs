@@ -273,10 +273,17 @@ fn condensed(table: &Table, runs: &[Runs], replicates: &[String], statistic: Sta
         let left_out = *index <= parameters && is_replicate(column);
         !left_out && !extrapolated::is_extrapolated(&column.name)
     });
+    let stands_alone = |(row, runs): (usize, &Runs)| runs.rows == [row] && runs.measured == [row];
+    let is_same = runs.len() == table.rows() && runs.iter().enumerate().all(stands_alone);
     let column = |(index, column): (usize, &Column)| {
         let number = matches!(column.cell_type, CellType::Number | CellType::Integer);
         let is_measure = index > parameters && number;
         let values_of = source(table, column);
+        // Single runs of a large study share its cells.
+        let is_same = is_same && (!is_measure || column.cell_type == CellType::Number);
+        if is_same && column.name != SAME_JOB_AS && std::ptr::eq(values_of, column) {
+            return column.clone();
+        }
         let cell = |runs: &Runs| {
             if is_measure {
                 let values =

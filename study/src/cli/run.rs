@@ -87,15 +87,8 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             eprintln!("note: {note}");
         }
     }
-    run_study(
-        &study,
-        study.job_limits(),
-        &root,
-        None,
-        selection(args.points.as_deref())?,
-        &args.options,
-        out,
-    )
+    let limits = study.job_limits();
+    run_study(study, limits, &root, None, selection(args.points.as_deref())?, &args.options, out)
 }
 
 /// The jobs that the run takes.
@@ -114,7 +107,7 @@ fn selection(points: Option<&str>) -> Result<Selection> {
 /// # Errors
 /// As [`run`], and jobs that gave different bits than before.
 pub(super) fn run_study(
-    study: &Study,
+    study: Study,
     limits: JobLimits,
     root: &Path,
     again: Option<&BTreeSet<JobId>>,
@@ -134,8 +127,8 @@ pub(super) fn run_study(
     memory.check()?;
     if !options.progress.quiet {
         // Before the run: a reader may want to change the study.
-        notes::print(study);
-        note.into_iter().chain(memory.note(study)).for_each(|note| eprintln!("{note}"));
+        notes::print(&study);
+        note.into_iter().chain(memory.note(&study)).for_each(|note| eprintln!("{note}"));
     }
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let results = Results::new(&Disk, root);
@@ -143,9 +136,9 @@ pub(super) fn run_study(
         &Run {
             name: &study.name,
             study: study.file(),
-            planner: &|finished| plan::next_jobs(study, finished),
+            planner: &|finished| plan::next_jobs(&study, finished),
             result_limits: study.result_limits(),
-            table: &|points, records| Table::of_study(study, points, records),
+            table: &|points, records| Table::of_study(&study, points, records),
             label: &|parameters| study.label(parameters, &units),
             executor: &Solver { instruction_set, references: References::default() },
             results: results.clone(),
@@ -163,11 +156,13 @@ pub(super) fn run_study(
         // The program ends soon after a signal, whatever the size of the study.
         return Err(error);
     }
-    let mut stored = Stored::read(results)?;
+    let journal = results.journal()?;
+    let mut stored = Stored::of(results, study, journal);
     stored.units = units;
     let table = stored.table();
     let answer = Answer::of(&stored, &table);
-    let ended = Ended { study, root, summary: &summary, points: stored.planned_runs() };
+    let (study, points) = (&stored.study, stored.planned_runs());
+    let ended = Ended { study, root, summary: &summary, points };
     ended.print(&answer, options.output.format(), out).map_err(output_error)?;
     result(study, &summary, &limits, root)
 }

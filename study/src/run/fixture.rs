@@ -128,7 +128,7 @@ pub fn table(root: &Path, jobs: u32) -> Table {
     let results = Results::new(&Disk, root);
     let records = results.journal().unwrap().records;
     let table = Table::build(&generation(jobs).points, &records, &|_| String::new());
-    assert_eq!(results.holds_table(&table).unwrap(), Some(true));
+    assert_eq!(results.holds_table(table.clone()).unwrap(), Some(true));
     table
 }
 

@@ -21,7 +21,7 @@ const RECORDS_PER_SYNC: usize = 256;
 fn write_table(results: &Results<'_>) -> Result<()> {
     let stored = Stored::read(results.clone())?;
     let Stored { study, points, journal, .. } = &stored;
-    results.write_table(&Table::of_study(study, points, &journal.records)).map(|_| ())
+    results.write_table(Table::of_study(study, points, &journal.records)).map(|_| ())
 }
 
 /// Makes a folder ready for parts of this study, whose runs read its study.json.

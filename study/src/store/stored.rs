@@ -57,27 +57,21 @@ impl<'a> Stored<'a> {
             return Err(Error::Disk { path: results.root().to_owned(), problem });
         }
         let journal = results.journal()?;
-        Self::with_journal(results, journal)
+        let study = Study::load(&results.study_path(), &[])?;
+        Ok(Self::of(results, study, journal))
     }
 
-    /// Reads a folder whose journal was read.
-    ///
-    /// # Errors
-    /// When study.json cannot be read.
-    pub fn with_journal(results: Results<'a>, journal: Journal) -> Result<Self> {
-        let study = Study::load(&results.study_path(), &[])?;
+    /// A folder whose study and journal were read.
+    pub fn of(results: Results<'a>, study: Study, journal: Journal) -> Self {
         let points = planned(&study, &journal);
         let units = study.display_units().clone();
-        Ok(Self { results, study, units, journal, points })
+        Self { results, study, units, journal, points }
     }
 
     /// The same results, read as those of another study: one that differs in its limits.
     #[must_use]
-    pub fn asked(mut self, study: Study) -> Self {
-        self.points = planned(&study, &self.journal);
-        self.units = study.display_units().clone();
-        self.study = study;
-        self
+    pub fn asked(self, study: Study) -> Self {
+        Self::of(self.results, study, self.journal)
     }
 
     /// The row of a point.

@@ -27,7 +27,7 @@ enum Command {
     Validate(cases::command::Args),
     /// Map where each method of integration fails, by real runs of small scenes.
     Stability(stability::command::Args),
-    /// Measure the speed of billow on this machine, stage by stage, against its targets.
+    /// Measure the speed of billow on this machine, stage by stage.
     Bench(bench::Args),
     /// Draw work-precision diagrams of scenes with an exact answer.
     Pareto(exact::Args),

@@ -54,8 +54,8 @@ pub struct Args {
     /// range.
     #[arg(long, value_name = "PARAMETER", requires = "with_over", conflicts_with = "map")]
     over: Option<String>,
-    /// Draw one line per combination of these parameters, comma-separated; the other parameters
-    /// that vary give panels [default: as many lines as are legible].
+    /// Draw one line per combination of these parameters, one or two, comma-separated; the others that vary give
+    /// panels [default: as many lines as are legible].
     #[arg(long, value_name = "PARAMETERS", value_delimiter = ',', requires = "over")]
     by: Vec<String>,
     /// Draw the measure as a map over two parameters.

@@ -50,7 +50,7 @@ pub(super) fn run(args: &Args, root: &Path, out: &mut dyn Write) -> Result<()> {
     if !args.options.progress.quiet {
         eprintln!("{} to run again", count(jobs.len(), "job"));
     }
-    run_study(&stored.study, limits, root, Some(&jobs), Selection::All, &args.options, out)
+    run_study(stored.study, limits, root, Some(&jobs), Selection::All, &args.options, out)
 }
 
 /// The jobs with these ids or statuses.
@@ -118,9 +118,10 @@ fn run_changed(
         })?;
         let root = beside(stored.results.root());
         let only = BTreeSet::from([found.job.id.clone()]);
+        let limits = study.job_limits();
         run_study(
-            &study,
-            study.job_limits(),
+            study,
+            limits,
             &root,
             Some(&only),
             Selection::All,

@@ -2,8 +2,7 @@
 //!
 //! Everything else follows from this table: the row of a job, the summary table and its Parquet
 //! metadata, `billow job --all`, the better side in `billow compare`, and
-//! docs/reference/columns.md. To add a measure, add one entry here and update the reference page
-//! (`BILLOW_UPDATE_REFERENCE=1` with the repository test `reference`). The entry takes its value
+//! docs/reference/columns.md. CONTRIBUTING.md says how to add one. The entry takes its value
 //! from a [`JobEnd`]: from the history, the tracks, or a field of
 //! [`billow_solver::output::measures::Measures`], which the solver computes.
 //!

@@ -19,8 +19,8 @@ impl Files for Disk {
         fs::create_dir_all(path).map(|()| true)
     }
 
-    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        fs::read(path)
+    fn open(&self, path: &Path) -> io::Result<Box<dyn io::Read>> {
+        Ok(Box::new(File::open(path)?))
     }
 
     fn stamp(&self, path: &Path) -> io::Result<Stamp> {

@@ -42,8 +42,8 @@ impl Files for FailingFiles {
         Disk.create_folder(path)
     }
 
-    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        Disk.read(path)
+    fn open(&self, path: &Path) -> io::Result<Box<dyn io::Read>> {
+        Disk.open(path)
     }
 
     fn stamp(&self, path: &Path) -> io::Result<Stamp> {

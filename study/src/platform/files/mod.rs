@@ -39,7 +39,17 @@ pub trait Files: Send + Sync {
     ///
     /// # Errors
     /// The error of the system.
-    fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        self.open(path)?.read_to_end(&mut bytes)?;
+        Ok(bytes)
+    }
+
+    /// Opens a file for reading.
+    ///
+    /// # Errors
+    /// The error of the system.
+    fn open(&self, path: &Path) -> io::Result<Box<dyn io::Read>>;
 
     /// Size and time of a file.
     ///

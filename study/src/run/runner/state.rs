@@ -251,7 +251,7 @@ impl<'a, 'w> State<'a, 'w> {
         if self.table_outdated {
             self.log.check_folder()?;
             let table = (self.run.table)(&self.points, &self.records);
-            self.run.results.write_table(&table)?;
+            self.run.results.write_table(table)?;
             self.table_outdated = false;
         }
         let now = Instant::now();

@@ -243,7 +243,7 @@ fn note_journal(results: &Results<'_>, journal: &Journal, health: &mut Health) {
 /// Compares the summary table with plan and journal.
 fn check_table(stored: &Stored<'_>, health: &mut Health) {
     let path = stored.results.table_path();
-    match stored.results.holds_table(&stored.table()) {
+    match stored.results.holds_table(stored.table()) {
         Err(error) => health.error(&path, &error),
         Ok(None) if health.running => {}
         Ok(None) => {

@@ -21,7 +21,7 @@ pub fn mend(files: &dyn Files, faults: &[Fault], damaged_folder: &Path) -> Resul
     for path in paths {
         let at = |error: io::Error| disk_error(path, &error);
         let bytes = files.read(path).map_err(at)?;
-        let lines = scan(path, &bytes)?;
+        let lines = scan(path, 0, &bytes)?;
         let mut valid = Vec::with_capacity(bytes.len());
         if lines.first().is_none_or(|header| header.entry.is_err()) {
             let header = line::header_text().map_err(|error| at(io::Error::other(error)))?;

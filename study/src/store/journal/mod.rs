@@ -20,6 +20,7 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
@@ -38,6 +39,9 @@ pub use mend::mend;
 pub use writer::Writer;
 
 use line::Entry;
+
+/// Bytes of a journal that are read at once. Chosen: far more than a line, far less than a large journal.
+const BLOCK: u64 = 1 << 23;
 
 /// A job that ended.
 #[derive(Debug, Clone, PartialEq)]
@@ -172,13 +176,21 @@ impl Journal {
 pub fn read(files: &dyn Files, folder: &Path) -> Result<Journal> {
     let mut journal = Journal::default();
     for path in &paths(files, folder)? {
-        let bytes = files.read(path).map_err(|error| disk_error(path, &error))?;
-        for line in scan(path, &bytes)? {
-            match line.entry {
-                Ok(Some(entry)) => journal.take(entry),
-                Ok(None) => {}
-                Err(fault) => journal.faults.push(fault),
+        let at = |error| disk_error(path, &error);
+        let mut file = files.open(path).map_err(at)?;
+        let (mut bytes, mut lines, mut is_end) = (Vec::new(), 0, false);
+        while !is_end {
+            is_end = (&mut file).take(BLOCK).read_to_end(&mut bytes).map_err(at)? == 0;
+            let scanned = if is_end { bytes.len() } else { complete(&bytes) };
+            for line in scan(path, lines, &bytes[..scanned])? {
+                lines += 1;
+                match line.entry {
+                    Ok(Some(entry)) => journal.take(entry),
+                    Ok(None) => {}
+                    Err(fault) => journal.faults.push(fault),
+                }
             }
+            bytes.drain(..scanned);
         }
     }
     Ok(journal)
@@ -207,15 +219,20 @@ struct ScannedLine<'a> {
     entry: std::result::Result<Option<Entry>, Fault>,
 }
 
-/// The lines of a journal.
-fn scan<'a>(path: &Path, bytes: &'a [u8]) -> Result<Vec<ScannedLine<'a>>> {
+/// Length of the complete lines.
+fn complete(bytes: &[u8]) -> usize {
+    bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1)
+}
+
+/// The lines of a journal that follow the first `before` lines.
+fn scan<'a>(path: &Path, before: usize, bytes: &'a [u8]) -> Result<Vec<ScannedLine<'a>>> {
     let fault = |line: usize, problem: String, torn: bool| Fault {
         path: path.to_owned(),
         line,
         problem,
         torn,
     };
-    let complete = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
+    let complete = complete(bytes);
     let all: Vec<&[u8]> = bytes[..complete].split_inclusive(|byte| *byte == b'\n').collect();
     let entry = |number: usize, bytes: &[u8]| {
         let read = if number == 1 {
@@ -234,11 +251,11 @@ fn scan<'a>(path: &Path, bytes: &'a [u8]) -> Result<Vec<ScannedLine<'a>>> {
     // A large study has 2 kB for each of its jobs.
     let lines = all.par_iter().enumerate();
     let mut lines: Vec<ScannedLine<'_>> = lines
-        .map(|(index, bytes)| Ok(ScannedLine { bytes, entry: entry(index + 1, bytes)? }))
+        .map(|(index, bytes)| Ok(ScannedLine { bytes, entry: entry(before + index + 1, bytes)? }))
         .collect::<Result<_>>()?;
     if complete < bytes.len() {
         let problem = "torn (the program was stopped while it wrote the line)".to_owned();
-        let entry = Err(fault(lines.len() + 1, problem, true));
+        let entry = Err(fault(before + lines.len() + 1, problem, true));
         lines.push(ScannedLine { bytes: &bytes[complete..], entry });
     }
     Ok(lines)

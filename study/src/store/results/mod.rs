@@ -203,7 +203,7 @@ impl<'a> Results<'a> {
     ///
     /// # Errors
     /// [`Error::Disk`].
-    pub fn write_table(&self, table: &Table) -> Result<bool> {
+    pub fn write_table(&self, table: Table) -> Result<bool> {
         let path = self.table_path();
         if path.is_dir() {
             self.set_aside(&path)?;
@@ -216,7 +216,7 @@ impl<'a> Results<'a> {
     ///
     /// # Errors
     /// [`Error::Disk`].
-    pub fn holds_table(&self, table: &Table) -> Result<Option<bool>> {
+    pub fn holds_table(&self, table: Table) -> Result<Option<bool>> {
         let path = self.table_path();
         match self.files.read(&path) {
             Ok(bytes) => Ok(Some(bytes == self.table_bytes(table)?)),
@@ -225,7 +225,7 @@ impl<'a> Results<'a> {
         }
     }
 
-    fn table_bytes(&self, table: &Table) -> Result<Vec<u8>> {
+    fn table_bytes(&self, table: Table) -> Result<Vec<u8>> {
         let at = |problem| Error::Disk { path: self.table_path(), problem };
         parquet::encode(table).map_err(at)
     }

@@ -7,6 +7,7 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use billow_solver::output::measures::Verdict;
 
@@ -55,13 +56,14 @@ pub struct Column {
     pub cells: ColumnCells,
 }
 
-/// The cells of a column. Where all of them are the same, as in a column that no job fills, one is kept.
+/// The cells of a column; a copy shares them. Where all of them are the same, as in a column that no job fills, one is
+/// kept.
 #[derive(Debug, Clone)]
 pub enum ColumnCells {
     /// This cell, and the number of rows.
     Same(Value, usize),
     /// The cell of each row.
-    Each(Vec<Value>),
+    Each(Arc<Vec<Value>>),
 }
 
 impl ColumnCells {
@@ -91,7 +93,7 @@ impl From<Vec<Value>> for ColumnCells {
             Some(first) if cells.iter().all(|cell| same(first, cell)) => {
                 Self::Same(first.clone(), cells.len())
             }
-            _ => Self::Each(cells),
+            _ => Self::Each(Arc::new(cells)),
         }
     }
 }
@@ -111,10 +113,10 @@ impl std::ops::Index<usize> for ColumnCells {
 impl std::ops::IndexMut<usize> for ColumnCells {
     fn index_mut(&mut self, row: usize) -> &mut Value {
         if let Self::Same(cell, rows) = self {
-            *self = Self::Each(vec![cell.clone(); *rows]);
+            *self = Self::Each(Arc::new(vec![cell.clone(); *rows]));
         }
         match self {
-            Self::Each(cells) => &mut cells[row],
+            Self::Each(cells) => &mut Arc::make_mut(cells)[row],
             Self::Same(..) => unreachable!("every row has its cell now"),
         }
     }

@@ -21,20 +21,21 @@ const FORMAT: &str = "billow-table";
 /// Version of the format.
 const VERSION: u64 = 1;
 
-/// The bytes of a table's file.
+/// The bytes of a table's file. Each column is dropped once it is converted: a large table needs the memory.
 ///
 /// # Errors
 /// The message of polars.
-pub fn encode(table: &Table) -> std::result::Result<Vec<u8>, String> {
+pub fn encode(table: Table) -> std::result::Result<Vec<u8>, String> {
     let label = |Column { name, unit, meaning, .. }: &Column| json!({ "name": name, "unit": unit, "meaning": meaning });
     let columns: Vec<_> = table.columns.iter().map(label).collect();
     let metadata = json!({ "format": FORMAT, "version": VERSION, "columns": columns });
     write(table, metadata.to_string()).map_err(|error| error.to_string())
 }
 
-fn write(table: &Table, metadata: String) -> PolarsResult<Vec<u8>> {
-    let columns = table.columns.iter().map(to_polars).collect::<PolarsResult<_>>()?;
-    let mut frame = DataFrame::new(table.rows(), columns)?;
+fn write(table: Table, metadata: String) -> PolarsResult<Vec<u8>> {
+    let rows = table.rows();
+    let columns = table.columns.into_iter().map(|column| to_polars(&column));
+    let mut frame = DataFrame::new(rows, columns.collect::<PolarsResult<_>>()?)?;
     let metadata = KeyValueMetadata::from_static(vec![(KEY.to_owned(), metadata)]);
     let mut bytes = Vec::new();
     ParquetWriter::new(&mut bytes)

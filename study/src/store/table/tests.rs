@@ -72,7 +72,7 @@ fn parameters_are_typed_and_keep_their_name() {
 #[test]
 fn a_table_written_twice_has_the_same_bytes_and_every_cell_counts() {
     let table = built();
-    let bytes = |table: &Table| parquet::encode(table).unwrap();
+    let bytes = |table: &Table| parquet::encode(table.clone()).unwrap();
     let mut changed = table.clone();
     assert!(bytes(&table).starts_with(b"PAR1") && bytes(&table) == bytes(&changed));
     for cell in [Value::Number(-0.0), Value::Number(0.0), Value::Number(f64::NAN), Value::Null] {
