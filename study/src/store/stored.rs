@@ -76,8 +76,7 @@ impl<'a> Stored<'a> {
 
     /// The row of a point.
     pub fn cells(&self, point: &Point) -> Cow<'_, Cells> {
-        journal::cells_of(point, &self.journal.records)
-            .unwrap_or_else(|| Cow::Owned(Cells::new(Status::Pending)))
+        journal::row_of(point, &self.journal.records)
     }
 
     /// The row of a job: that of its point, or for a job without one its record.

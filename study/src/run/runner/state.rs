@@ -1,6 +1,5 @@
 //! The thread of a run that stores results: what is finished, what is missing, what came back.
 
-use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
 
@@ -9,8 +8,8 @@ use super::quarantine::{self, Deaths};
 use super::workers::Ended;
 use super::{Run, Summary};
 use crate::job::point::Point;
-use crate::job::row::{Cells, ColumnId};
-use crate::job::{Job, JobId, Status};
+use crate::job::row::ColumnId;
+use crate::job::{Job, JobId};
 use crate::platform::error::{Error, Result};
 use crate::run::event::{Event, Reporter};
 use crate::store::finished;
@@ -259,10 +258,6 @@ impl<'a, 'w> State<'a, 'w> {
         Ok(())
     }
 
-    fn cells(&self, point: &Point) -> Option<Cow<'_, Cells>> {
-        journal::cells_of(point, &self.records)
-    }
-
     /// Finished rows for the planner, in plan order.
     pub(super) fn finished(&self) -> Vec<FinishedRow> {
         finished::rows(&self.points, &self.records, self.run.result_limits)
@@ -272,9 +267,7 @@ impl<'a, 'w> State<'a, 'w> {
     pub(super) fn summary(&self) -> Summary {
         let mut summary = Summary { signal: self.run.stop.requested(), ..self.summary.clone() };
         for point in &self.points {
-            let cells =
-                self.cells(point).unwrap_or_else(|| Cow::Owned(Cells::new(Status::Pending)));
-            summary.counts.add_cells(&cells);
+            summary.counts.add_cells(&journal::row_of(point, &self.records));
         }
         summary
     }

@@ -25,9 +25,9 @@ use std::path::{Path, PathBuf};
 
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
-use crate::job::JobId;
 use crate::job::point::Point;
 use crate::job::row::Cells;
+use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Files, Stamp, disk_error};
 
@@ -102,6 +102,11 @@ pub fn cells_of<'a>(point: &Point, records: &'a BTreeMap<JobId, Record>) -> Opti
         return Some(Cow::Owned(Cells::infeasible(infeasible)));
     }
     Some(Cow::Borrowed(&records.get(&point.job.id)?.cells))
+}
+
+/// The row of a point, pending while its job has not ended.
+pub fn row_of<'a>(point: &Point, records: &'a BTreeMap<JobId, Record>) -> Cow<'a, Cells> {
+    cells_of(point, records).unwrap_or_else(|| Cow::Owned(Cells::new(Status::Pending)))
 }
 
 /// What the journals of a study hold.

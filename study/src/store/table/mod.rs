@@ -192,10 +192,7 @@ impl Table {
         columns.extend(parameter_columns(points, unit));
         let parameters: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
 
-        let row = |row: &PointRow<'_>| {
-            journal::cells_of(row.point, records)
-                .unwrap_or_else(|| Cow::Owned(Cells::new(Status::Pending)))
-        };
+        let row = |row: &PointRow<'_>| journal::row_of(row.point, records);
         let rows: Vec<Cow<'_, Cells>> = points.iter().map(row).collect();
         for column in COLUMNS {
             let shadowed = parameters.iter().any(|name| name == column.name);
