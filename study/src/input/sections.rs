@@ -2,8 +2,6 @@
 
 use std::fmt::Write as _;
 
-use billow_solver::scene::InflowWindow;
-
 use crate::input::json::Json;
 use crate::input::keys::{KEYS, STRATEGY_KEYS, STUDY, Table, WINDOW_KEYS, position};
 use crate::input::object::object;
@@ -226,21 +224,4 @@ pub(crate) fn check_window(
     let next = "change it, or raise solver.end_time".to_owned();
     source.warn_point(&format!("{path}.{key}"), &value, Implausible { problem, next });
     Ok(())
-}
-
-/// Inflow windows in order of time. Windows without inflow before the end (s) are left out, and windows that last
-/// beyond the end are cut there, so that equal physics gives an equal job.
-pub(crate) fn in_order(mut windows: Vec<InflowWindow>, end_time: f64) -> Vec<InflowWindow> {
-    for window in &mut windows {
-        window.to = window.to.min(end_time);
-    }
-    windows.retain(|window| window.mass_flow_rate > 0.0 && window.from < window.to);
-    windows.sort_by(|a, b| {
-        a.from
-            .total_cmp(&b.from)
-            .then(a.to.total_cmp(&b.to))
-            .then(a.mass_flow_rate.total_cmp(&b.mass_flow_rate))
-            .then(a.temperature.total_cmp(&b.temperature))
-    });
-    windows
 }

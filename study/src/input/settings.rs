@@ -1,4 +1,5 @@
 //! The values of the keys of a file, and the parts of a scene that studies and scene files give by the same keys.
+//! `sections` reads them from the tree of the file.
 
 use std::collections::BTreeMap;
 
@@ -226,13 +227,26 @@ impl Settings {
         })
     }
 
-    /// The gas with this mass at the start and these inflow windows.
+    /// The gas with this mass at the start and these inflow windows: in order of time, those without inflow before the
+    /// end of the run left out, and cut there, so that equal physics gives an equal job.
     pub fn gas(
         &self,
         initial_mass: f64,
-        windows: Vec<InflowWindow>,
+        mut windows: Vec<InflowWindow>,
         source: &Source,
     ) -> Result<GasSupply, InputError> {
+        let end_time = self.number("solver.end_time").unwrap_or(f64::INFINITY);
+        for window in &mut windows {
+            window.to = window.to.min(end_time);
+        }
+        windows.retain(|window| window.mass_flow_rate > 0.0 && window.from < window.to);
+        windows.sort_by(|a, b| {
+            a.from
+                .total_cmp(&b.from)
+                .then(a.to.total_cmp(&b.to))
+                .then(a.mass_flow_rate.total_cmp(&b.mass_flow_rate))
+                .then(a.temperature.total_cmp(&b.temperature))
+        });
         Ok(GasSupply {
             species: self.species(source)?,
             initial_mass,

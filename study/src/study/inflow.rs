@@ -5,7 +5,7 @@ use billow_solver::scene::InflowWindow;
 
 use crate::input::keys::{RESIDUAL_GAS, ResidualGas, WINDOW_KEYS, position};
 use crate::input::plausible::Implausible;
-use crate::input::sections::{check_window, in_order};
+use crate::input::sections::check_window;
 use crate::input::settings::{Settings, Strategy};
 use crate::input::source::{Source, shown};
 use crate::input::value::brief_number;
@@ -30,14 +30,14 @@ pub(super) struct Inflow<'a> {
 }
 
 impl Inflow<'_> {
-    /// Inflow windows in order of time, cut at the end of the run.
+    /// The burst of residual gas, if there is one, then the inflow windows of the strategy.
     pub fn windows(&self) -> Result<Vec<InflowWindow>, InputError> {
         let temperature = self.settings.needed("gas.inflow_temperature", self.source)?;
         let mut windows: Vec<InflowWindow> = self.burst(temperature)?.into_iter().collect();
         for index in 0..self.strategy.windows {
             windows.push(self.window(index, temperature)?);
         }
-        Ok(in_order(windows, self.end_time))
+        Ok(windows)
     }
 
     /// The burst of residual gas from release on.

@@ -6,10 +6,11 @@
 //! ```
 //! Every error of a study is found here, before anything runs.
 //!
-//! A value of the grid, from text to scene: `grid/read.rs` reads it with its unit, by the key of its axis
-//! (`input/keys/key.rs`); `expand.rs` sets it in the settings of each point; `resolve.rs` makes the scene of these
-//! settings, and `inflow.rs` its inflow windows. A study without strategies has one, `direct`, with one window, which
-//! takes the values of section `gas`.
+//! A value of the grid, from text to scene, passes six files: `grid/read.rs` takes the text of an axis;
+//! `input/keys/key.rs` reads it with its unit as a [`Value`] in SI; `expand.rs` sets it in the settings of each point
+//! (`input/settings.rs`), by the index that `column.rs` finds for the name of the axis; `resolve.rs` makes the scene of
+//! these settings, `inflow.rs` its inflow windows, from numbers that `Settings::needed` takes. A study without strategies
+//! has one, `direct`, with one window, which takes the values of section `gas`; a burst of residual gas is a window too.
 
 mod column;
 mod expand;

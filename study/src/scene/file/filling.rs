@@ -15,7 +15,7 @@ use crate::input::json::Json;
 use crate::input::keys::SCENE_WINDOW_KEYS;
 use crate::input::object::Object;
 use crate::input::object::list;
-use crate::input::sections::{check_window, in_order};
+use crate::input::sections::check_window;
 use crate::input::settings::Settings;
 use crate::input::source::{Source, shown};
 use crate::platform::error::InputError;
@@ -127,7 +127,7 @@ fn below_ambient(supply: &GasSupply, volume: f64, temperature: f64) -> Option<St
     })
 }
 
-/// Inflow windows in order of time, cut at the end of the run.
+/// The inflow windows of the file.
 fn windows(
     json: Option<&Json>,
     settings: &Settings,
@@ -149,7 +149,7 @@ fn windows(
         let temperature = window.needed("temperature")?;
         windows.push(InflowWindow { from, to, mass_flow_rate, temperature });
     }
-    Ok(in_order(windows, end_time))
+    Ok(windows)
 }
 
 /// Largest enclosed volume that counts as zero, as a fraction of A^(3/2) of the film's area A (chosen:
