@@ -159,9 +159,9 @@ fn files_of_a_newer_version_are_refused() {
     for (path, from, to, expected) in [
         (
             &journal,
-            "\"version\":6",
             "\"version\":7",
-            "journal of version 7, this program reads version 6",
+            "\"version\":8",
+            "journal of version 8, this program reads version 7",
         ),
         (&study, "\"version\": 1", "\"version\": 2", "version 2, this program reads version 1"),
     ] {

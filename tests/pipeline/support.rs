@@ -138,7 +138,7 @@ pub fn paper_design(subdivisions: u32) -> Value {
 /// Rows without cost and provenance.
 pub fn without_costs(rows: Vec<Value>) -> Vec<Value> {
     let strip = |mut row: Value| {
-        for column in ["wall_seconds", "ns_per_element_step", "commit", "program_version"] {
+        for column in ["wall_seconds", "time_per_zone_cycle", "commit", "program_version"] {
             row.as_object_mut().unwrap().remove(column);
         }
         row

@@ -76,7 +76,7 @@ TABLE_UNITS = {
     "ringing_frequency": "Hz",
     "reference_volume": "m3",
     "ledger_residual": "1",
-    "ns_per_element_step": "ns",
+    "time_per_zone_cycle": "ns",
 }
 TABLE_TYPES = {
     "job": "string",

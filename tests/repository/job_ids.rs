@@ -27,7 +27,7 @@ fn planned() -> Ids {
             continue;
         }
         let output = Command::new(env!("CARGO_BIN_EXE_billow"))
-            .args(["plan", &path.to_string_lossy(), "--json"])
+            .args(["plan", &path.to_string_lossy(), "--json", "--results", "target/no-results"])
             .current_dir(root())
             .output()
             .expect("billow runs");

@@ -41,7 +41,7 @@ say() { printf 'slurm: %4d s: %s\n' "$SECONDS" "$*"; }
 table() {
   "$billow" table "$1" --runs --format json --quiet | python3 -c '
 import json, sys
-leave_out = {"wall_seconds", "ns_per_element_step", "program_version", "commit"}
+leave_out = {"wall_seconds", "time_per_zone_cycle", "program_version", "commit"}
 for row in json.load(sys.stdin):
     print(json.dumps({name: cell for name, cell in row.items() if name not in leave_out}))
 '

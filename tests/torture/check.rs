@@ -10,7 +10,7 @@ use crate::program::{Finish, Place, RUN, files};
 use crate::trial::Trial;
 
 /// Columns that say what a run cost and which program made it.
-const COSTS: [&str; 4] = ["wall_seconds", "ns_per_element_step", "commit", "program_version"];
+const COSTS: [&str; 4] = ["wall_seconds", "time_per_zone_cycle", "commit", "program_version"];
 /// Differences that are named for one trial, at most.
 const MAX_NAMED: usize = 3;
 

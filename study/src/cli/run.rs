@@ -21,8 +21,9 @@ use crate::platform::stop::Stop;
 use crate::print::notes;
 use crate::print::{count, points_of_runs};
 use crate::run::progress;
-use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run, Summary};
+use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run, RunResult, Summary};
 use crate::run::selection::{Part, Selection};
+use crate::store::journal::Journal;
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
 use crate::store::table::Table;
@@ -132,7 +133,7 @@ pub(super) fn run_study(
     }
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let results = Results::new(&Disk, root);
-    let summary = runner::run(
+    let RunResult { summary, points, records } = runner::run(
         &Run {
             name: &study.name,
             study: study.file(),
@@ -152,25 +153,20 @@ pub(super) fn run_study(
         },
         progress::reporter(options.progress.loudness(), threads).as_mut(),
     )?;
-    if let Some(error) = interrupted(&summary) {
+    // A signal after the last job has stopped nothing.
+    let open = summary.counts.of(Status::Pending) > 0;
+    if let Some(signal) = summary.signal.filter(|_| open) {
         // The program ends soon after a signal, whatever the size of the study.
-        return Err(error);
+        return Err(Error::Signal(signal));
     }
-    let journal = results.journal()?;
-    let mut stored = Stored::of(results, study, journal);
-    stored.units = units;
+    let journal = Journal { records, ..Journal::default() };
+    let stored = Stored { results, study, units, journal, points };
     let table = stored.table();
     let answer = Answer::of(&stored, &table);
     let (study, points) = (&stored.study, stored.planned_runs());
     let ended = Ended { study, root, summary: &summary, points };
     ended.print(&answer, options.output.format(), out).map_err(output_error)?;
     result(study, &summary, &limits, root)
-}
-
-/// The error of a run that a signal stopped. A signal after the last job has stopped nothing.
-fn interrupted(summary: &Summary) -> Option<Error> {
-    let open = summary.counts.of(Status::Pending) > 0;
-    summary.signal.filter(|_| open).map(Error::Signal)
 }
 
 /// A run that ended.

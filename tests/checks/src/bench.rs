@@ -1,11 +1,11 @@
 //! Speed of billow on this machine: `billow-checks bench`.
 //!
 //! ```text
-//! cost = wall time / (steps × elements)        ns per element and step
+//! time per zone cycle = wall time / (steps × elements)        ns
 //! ```
 //!
 //! The film is the paper's capsule from `scenes/capsule.json`. It runs from the stowed shape as in `billow solve`. From
-//! three states of the motion the same steps are repeated, alternately with a clock in every stage and without. The cost of
+//! three states of the motion the same steps are repeated, alternately with a clock in every stage and without. That of
 //! a stage is its minimum over the repeats, the whole is the minimum without clocks: other load only adds time.
 
 use std::io::Write;
@@ -154,7 +154,7 @@ impl Capsule {
         }
     }
 
-    /// Cost of a number of steps that took this wall time (s), ns per element and step.
+    /// Time per zone cycle of a number of steps that took this wall time (s), ns.
     fn cost(&self, seconds: f64, steps: u64) -> f64 {
         1e9 * seconds / (steps as f64 * self.film.elements() as f64)
     }
@@ -171,7 +171,7 @@ impl Capsule {
             ("wall_seconds", self.wall.into()),
             ("core_seconds", self.on_core.into()),
             ("wall_per_second", (self.wall / time).into()),
-            ("ns_per_element_step", self.cost(self.wall, steps).into()),
+            ("time_per_zone_cycle", self.cost(self.wall, steps).into()),
             ("ledger_residual", audit.ledger_residual.into()),
             ("passages", audit.passages.into()),
             ("peak_memory", memory::peak_resident().into()),

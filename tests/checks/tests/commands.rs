@@ -26,7 +26,7 @@ fn bench_has_every_stage_and_run() {
     for row in runs {
         let steps = row["steps"].as_f64().unwrap() * row["elements"].as_f64().unwrap();
         let cost = 1e9 * row["wall_seconds"].as_f64().unwrap() / steps;
-        assert!((cost / row["ns_per_element_step"].as_f64().unwrap() - 1.0).abs() < 1e-9);
+        assert!((cost / row["time_per_zone_cycle"].as_f64().unwrap() - 1.0).abs() < 1e-9);
         assert!(row["passages"] == 0 && row["ledger_residual"].as_f64() < Some(1e-2), "{row:?}");
     }
 }
@@ -37,7 +37,7 @@ fn bench_sets_keys_and_refuses_invalid_flags() {
     let short = ["bench", "--subdivisions", "1", "--end-time", "0.01"];
     let output = folder.run(&[&short[..], &["--set", "solver.integrator=hybrid"]].concat());
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(text.contains("ns_per_element_step") && !text.contains("rising"), "{text}");
+    assert!(text.contains("time_per_zone_cycle") && !text.contains("rising"), "{text}");
     assert!(stderr(&output).contains("n 1, 0.01 s"), "{}", stderr(&output));
     for (flags, words) in [
         (["--subdivisions", "0"], "--subdivisions"),

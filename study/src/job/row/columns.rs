@@ -339,9 +339,9 @@ columns! {
     WallSeconds "wall_seconds" Number ["s"] Cost Neither
         "wall time of the job without its static equilibria; of a resumed job, since it was resumed"
         end => end.seconds();
-    NsPerElementStep "ns_per_element_step" Number ["ns"] Cost Neither
-        "wall time over elements and steps; null without elements"
-        end => end.ns_per_element_step();
+    TimePerZoneCycle "time_per_zone_cycle" Number ["ns"] Cost Neither
+        "wall time over elements and steps, of all that a step takes with its audit; null without elements"
+        end => end.time_per_zone_cycle();
     ProgramVersion "program_version" Text [""] Provenance Neither
         "version of the program that ran the job"
         _end => provenance::PROGRAM_VERSION;

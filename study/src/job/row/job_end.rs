@@ -144,7 +144,7 @@ impl<'a> JobEnd<'a> {
     }
 
     /// Wall time over elements and accepted steps, ns. Both count from the last start or resume.
-    pub fn ns_per_element_step(&self) -> Option<f64> {
+    pub fn time_per_zone_cycle(&self) -> Option<f64> {
         let Outcome::Ran { deployment, seconds, steps } = self.outcome else { return None };
         let element_steps = *steps as f64 * deployment.elements as f64;
         (element_steps > 0.0).then(|| seconds * 1e9 / element_steps)

@@ -40,7 +40,7 @@ fn run_part(study: &Study, root: &Path, selection: Selection) -> Summary {
         known: results.known().unwrap(),
         ..fixture::run(results, &planner, &executor)
     };
-    runner::run(&run, &mut Silent).unwrap()
+    runner::run(&run, &mut Silent).unwrap().summary
 }
 
 fn part(text: &str) -> Selection {

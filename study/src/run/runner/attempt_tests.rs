@@ -72,7 +72,7 @@ fn run_with(
         ..fixture::run(Results::new(&Disk, root), &planner, executor)
     };
     let mut notes = Notes(Vec::new());
-    let summary = run(&study, &mut notes).unwrap();
+    let summary = run(&study, &mut notes).unwrap().summary;
     (summary, notes.0)
 }
 

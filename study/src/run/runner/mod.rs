@@ -96,12 +96,22 @@ pub struct Summary {
     pub not_selected: usize,
 }
 
+/// What a run leaves in memory; the results folder has it too.
+pub struct RunResult {
+    /// How it ended.
+    pub summary: Summary,
+    /// Every point planned.
+    pub points: Vec<Point>,
+    /// The records of their jobs.
+    pub records: BTreeMap<JobId, Record>,
+}
+
 /// Runs the jobs of a study that are not finished.
 ///
 /// # Errors
 /// [`crate::platform::error::Error::Disk`] when results cannot be read or stored. Jobs that were
 /// stored before are kept.
-pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
+pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<RunResult> {
     let lock = run.results.lock()?;
     let opened = exclusive::open(&run.results, Some((run.name, run.study)))?;
     for fault in &opened.faults {
@@ -113,7 +123,7 @@ pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
     run_generations(run, &mut state, reporter)?;
     state.write_table()?;
     reporter.event(&Event::Ended);
-    Ok(state.summary())
+    Ok(state.into_result())
 }
 
 /// Runs one generation after another, until a job of one is not finished.

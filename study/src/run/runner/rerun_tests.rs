@@ -32,7 +32,7 @@ fn run_on<S: Fn(u32) -> Outcome + Sync>(
     let planner = |finished: &[FinishedRow]| finished.is_empty().then(|| fixture::generation(JOBS));
     let study = fixture::run(Results::new(files, root), &planner, &executor);
     let study = Run { rerun: ids.as_ref(), ..study };
-    let ended = run(&study, &mut Silent);
+    let ended = run(&study, &mut Silent).map(|ended| ended.summary);
     (ended, executor.executed.load(Ordering::SeqCst))
 }
 

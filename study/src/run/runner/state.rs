@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use super::attempt_log::AttemptLog;
 use super::quarantine::{self, Deaths};
 use super::workers::Ended;
-use super::{Run, Summary};
+use super::{Run, RunResult, Summary};
 use crate::job::point::Point;
 use crate::job::row::ColumnId;
 use crate::job::{Job, JobId};
@@ -264,11 +264,12 @@ impl<'a, 'w> State<'a, 'w> {
     }
 
     /// The result of the run so far.
-    pub(super) fn summary(&self) -> Summary {
-        let mut summary = Summary { signal: self.run.stop.requested(), ..self.summary.clone() };
-        for point in &self.points {
-            summary.counts.add_cells(&journal::row_of(point, &self.records));
+    pub(super) fn into_result(self) -> RunResult {
+        let Self { points, records, .. } = self;
+        let mut summary = Summary { signal: self.run.stop.requested(), ..self.summary };
+        for point in &points {
+            summary.counts.add_cells(&journal::row_of(point, &records));
         }
-        summary
+        RunResult { summary, points, records }
     }
 }

@@ -56,7 +56,7 @@ fn run_on(
 ) -> Result<Summary> {
     let planner = generation_zero(jobs);
     let study = fixture::run(Results::new(files, root), &planner, executor);
-    run(&Run { threads: NonZero::new(threads), ..study }, reporter)
+    run(&Run { threads: NonZero::new(threads), ..study }, reporter).map(|ended| ended.summary)
 }
 
 fn run_quiet(root: &Path, jobs: u32, threads: usize, executor: &dyn Executor) -> Summary {

@@ -18,7 +18,7 @@ use crate::platform::provenance;
 /// Name of the format, in the header.
 pub const FORMAT: &str = "billow-journal";
 /// Version of the format. Others are refused.
-pub const VERSION: u64 = 6;
+pub const VERSION: u64 = 7;
 
 /// [`Line::kind`] of a job to run again. The line of an ended job has no kind.
 const INVALIDATED: &str = "invalidated";

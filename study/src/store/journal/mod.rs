@@ -6,7 +6,7 @@
 //! When a job has several lines, the last line of the last file counts.
 //!
 //! ```text
-//! {"checksum":"…","format":"billow-journal","version":6,…}
+//! {"checksum":"…","format":"billow-journal","version":7,…}
 //! {"checksum":"…","job":"<id>","cells":{…},                       a job that ended
 //!     "file_hash":"<SHA-256 of its history file>","file_size":…,"file_time":"…"}
 //! {"checksum":"…","kind":"invalidated","job":"<id>"}              a job to run again

@@ -177,11 +177,11 @@ fn lines_are_checked_for_their_meaning() {
 fn a_journal_of_another_version_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("000001.jsonl");
-    for version in [5, 7] {
+    for version in [6, 8] {
         let header = format!("{{\"format\":\"billow-journal\",\"version\":{version}}}");
         std::fs::write(&path, seal::seal(&header) + "\n").unwrap();
         let problem = read(&Disk, folder.path()).unwrap_err().to_string();
-        let expected = format!("version {version}, this program reads version 6");
+        let expected = format!("version {version}, this program reads version 7");
         assert!(problem.contains(&expected), "{problem}");
     }
 }
