@@ -8,8 +8,8 @@ use billow_solver::scene::Scene;
 use crate::input::value::Value;
 use crate::job::JobId;
 
-/// The varied parameters of a point, in the order of the study's axes: name and value (SI).
-pub type Parameters = Vec<(String, Value)>;
+/// The varied parameters of a point, in the order of the study's axes: name and value (SI). Copies share them.
+pub type Parameters = Arc<[(String, Value)]>;
 
 /// Parameters as text, in SI: "N=5 M=2".
 pub fn label(parameters: &Parameters) -> String {

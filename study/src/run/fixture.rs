@@ -39,7 +39,8 @@ pub fn job(number: u32) -> Job {
         parameters: vec![
             ("N".to_owned(), Value::Integer(6)),
             ("mass_flow_rate".to_owned(), Value::Number(0.001 * f64::from(number))),
-        ],
+        ]
+        .into(),
         scene: scene(number).into(),
     }
 }

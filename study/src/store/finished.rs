@@ -8,21 +8,15 @@ use crate::job::result_limit::ResultLimit;
 use crate::store::journal::{self, Record};
 use crate::study::finished::FinishedRow;
 
-/// The finished rows of some points, in their order.
+/// The finished rows of some points, in their order, each under the id of its planned job.
 pub fn rows(
     points: &[Point],
     records: &BTreeMap<JobId, Record>,
     limits: &[ResultLimit],
 ) -> Vec<FinishedRow> {
-    points.iter().filter_map(|point| row(point, records, limits)).collect()
-}
-
-/// The row of a point, under the id of its planned job; `None` while its job has not ended.
-pub fn row(
-    point: &Point,
-    records: &BTreeMap<JobId, Record>,
-    limits: &[ResultLimit],
-) -> Option<FinishedRow> {
-    let cells = journal::cells_of(point, records)?;
-    Some(FinishedRow::of(&point.job.id, &cells, limits))
+    let row = |point: &Point| {
+        let cells = journal::cells_of(point, records)?;
+        Some(FinishedRow::of(&point.job.id, &cells, limits))
+    };
+    points.iter().filter_map(row).collect()
 }

@@ -50,7 +50,7 @@ fn runs(borders: &[Border]) -> Table {
                 parameters.push(("mass_flow_rate".to_owned(), Value::Number(level.value)));
                 parameters.push(("seed".to_owned(), Value::Integer(seed)));
                 let mut point = point(u32::try_from(points.len()).unwrap(), &[]);
-                point.job.parameters = parameters;
+                point.job.parameters = parameters.into();
                 points.push(point);
             }
         }

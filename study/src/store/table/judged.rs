@@ -134,7 +134,7 @@ mod tests {
             let number = |value: usize| Value::Integer(i64::try_from(value).unwrap());
             let parameters =
                 vec![("N".to_owned(), number(index / 3)), ("seed".to_owned(), number(index % 3))];
-            point.job = Job { parameters, ..point.job.clone() };
+            point.job = Job { parameters: parameters.into(), ..point.job.clone() };
             let mut cells = Cells::new(Status::Done);
             cells.set(ColumnId::Verdict, verdicts[index]);
             cells.set(ColumnId::PeakVz, speeds[index]);

@@ -281,7 +281,7 @@ pub fn row_column_name(name: &str) -> &str {
 /// Every parameter of any point, in the order of first appearance.
 fn parameter_columns(points: &[PointRow<'_>], unit: &dyn Fn(&str) -> String) -> Vec<Column> {
     let mut names: Vec<&str> = Vec::new();
-    for (name, _) in points.iter().flat_map(|point| point.parameters) {
+    for (name, _) in points.iter().flat_map(|point| point.parameters.iter()) {
         if !names.contains(&name.as_str()) {
             names.push(name);
         }

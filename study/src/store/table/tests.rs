@@ -7,8 +7,10 @@ use crate::run::fixture;
 
 fn built() -> Table {
     let mut points = fixture::generation(5).points;
-    points[1].job.parameters[1].1 = Value::Integer(3);
-    points[3].job.parameters.push(("height".to_owned(), Value::Text("tall".to_owned())));
+    Arc::make_mut(&mut points[1].job.parameters)[1].1 = Value::Integer(3);
+    let tall = ("height".to_owned(), Value::Text("tall".to_owned()));
+    let parameters = &mut points[3].job.parameters;
+    *parameters = parameters.iter().cloned().chain([tall]).collect();
     let mut records = BTreeMap::new();
     for number in [4, 0] {
         let job = &points[number].job;
@@ -43,7 +45,7 @@ fn points_of_one_job_are_rows_that_name_each_other() {
     let mut points = fixture::generation(2).points;
     let with = |number: i64| {
         let mut parameters = points[0].job.parameters.clone();
-        parameters[0].1 = Value::Integer(number);
+        Arc::make_mut(&mut parameters)[0].1 = Value::Integer(number);
         parameters
     };
     // Given twice, N = 7 is one row; the cell of a job of many points stays short.

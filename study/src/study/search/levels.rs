@@ -1,7 +1,7 @@
 //! What is known along one search: the outcome at each value, the border, the next values to run.
 
 use super::Search;
-use crate::job::Parameters;
+use crate::input::value::Value;
 use crate::job::proportion::Proportion;
 
 /// One value of a search, with its runs.
@@ -57,7 +57,7 @@ pub enum SearchResult {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Border {
     /// The other parameters, without replicates.
-    pub parameters: Parameters,
+    pub parameters: Vec<(String, Value)>,
     /// Its values, from the smallest to the largest.
     pub levels: Vec<Level>,
     /// What it found.

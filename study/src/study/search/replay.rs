@@ -8,9 +8,9 @@ use billow_solver::output::measures::Verdict;
 use super::Criterion;
 use super::levels::{Border, Level, next, outcome};
 use crate::input::value::Value;
+use crate::job::JobId;
 use crate::job::point::{Point, Searched};
 use crate::job::proportion::Proportion;
-use crate::job::{JobId, Parameters};
 use crate::study::Study;
 use crate::study::finished::FinishedRow;
 
@@ -122,7 +122,7 @@ impl<'a> Replay<'a> {
                 grid.search.as_ref().is_some_and(|search| search.column != *column)
                     && !grid.is_replicate(*column)
             });
-            let parameters: Parameters = others
+            let parameters = others
                 .map(|(column, value)| (grid.columns[column].name.clone(), value.clone()))
                 .collect();
             let outcome = outcome(&levels, replicates);
