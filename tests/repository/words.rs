@@ -124,7 +124,7 @@ const MAX_LINE: usize = 120;
 const MAX_LINES: [(&str, usize); 6] = [
     ("README.md", 90),
     ("DESIGN.md", 110),
-    ("CONTRIBUTING.md", 120),
+    ("CONTRIBUTING.md", 110),
     ("docs/guide/", 120),
     ("docs/theory/", 120),
     ("docs/decisions/0", 40),

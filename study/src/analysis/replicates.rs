@@ -280,8 +280,8 @@ fn condensed(table: &Table, runs: &[Runs], replicates: &[String], statistic: Sta
         let is_measure = index > parameters && number;
         let values_of = source(table, column);
         // Single runs of a large study share its cells.
-        let is_same = is_same && (!is_measure || column.cell_type == CellType::Number);
-        if is_same && column.name != SAME_JOB_AS && std::ptr::eq(values_of, column) {
+        let keeps_type = !is_measure || column.cell_type == CellType::Number;
+        if is_same && keeps_type && column.name != SAME_JOB_AS && std::ptr::eq(values_of, column) {
             return column.clone();
         }
         let cell = |runs: &Runs| {

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! The film is the paper's capsule from `scenes/capsule.json`. It runs from the stowed shape as in `billow solve`. From
-//! three states of the motion the same steps are repeated, alternately with a clock in every stage and without. That of
-//! a stage is its minimum over the repeats, the whole is the minimum without clocks: other load only adds time.
+//! three states of the motion the same steps are repeated, alternately with a clock in every stage and without. The time
+//! of a stage is its minimum over the repeats, the whole is the minimum without clocks: other load only adds time.
 
 use std::io::Write;
 use std::path::Path;

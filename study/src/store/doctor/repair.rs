@@ -71,12 +71,12 @@ pub fn repair(results: &Results<'_>) -> Result<Vec<Repaired>> {
 /// Writes the summary table again if it is not that of plan and journal, and keeps the one that was there.
 /// Returns whether it was written.
 fn repair_table(stored: &Stored<'_>) -> Result<bool> {
-    let results = &stored.results;
-    if results.holds_table(stored.table())? == Some(true) || is_of_other_physics(stored) {
+    let (results, table) = (&stored.results, stored.table());
+    if results.holds_table(table.clone())? == Some(true) || is_of_other_physics(stored) {
         return Ok(false);
     }
     results.set_aside(&results.table_path())?;
-    results.write_table(stored.table())
+    results.write_table(table)
 }
 
 fn invalidate(writer: &mut Writer<'_>, journal: &mut Journal, job: &JobId) -> Result<()> {

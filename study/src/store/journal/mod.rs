@@ -40,8 +40,9 @@ pub use writer::Writer;
 
 use line::Entry;
 
-/// Bytes of a journal that are read at once. Chosen: far more than a line, far less than a large journal.
-const BLOCK: u64 = 1 << 23;
+/// Bytes of a journal that are read at once. Chosen: far more than a line, far less than a large journal; in unit tests
+/// less than a line, so that lines span blocks.
+const BLOCK: u64 = if cfg!(test) { 100 } else { 1 << 23 };
 
 /// A job that ended.
 #[derive(Debug, Clone, PartialEq)]
