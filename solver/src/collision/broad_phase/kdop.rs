@@ -133,24 +133,29 @@ impl KDops {
 #[inline(always)]
 fn separation(KDop(a): &KDop, KDop(b): &KDop) -> f32 {
     let larger = |a: f32, b: f32| if a > b { a } else { b };
-    let mut gaps = [0.0_f32; DIRECTIONS];
+    let (mut above, mut below) = ([0.0_f32; DIRECTIONS], [0.0_f32; DIRECTIONS]);
     for direction in 0..DIRECTIONS {
-        let above = a[direction] + b[DIRECTIONS + direction];
-        let below = b[direction] + a[DIRECTIONS + direction];
-        gaps[direction] = larger(above, below);
+        above[direction] = a[direction] + b[DIRECTIONS + direction];
+    }
+    for direction in 0..DIRECTIONS {
+        below[direction] = a[DIRECTIONS + direction] + b[direction];
+    }
+    for direction in 0..DIRECTIONS {
+        above[direction] = larger(above[direction], below[direction]);
     }
     let mut half = [0.0_f32; DIRECTIONS / 2];
     for lane in 0..DIRECTIONS / 2 {
-        half[lane] = larger(gaps[lane], gaps[lane + DIRECTIONS / 2]);
+        half[lane] = larger(above[lane], above[lane + DIRECTIONS / 2]);
     }
     larger(larger(half[0], half[2]), larger(half[1], half[3]))
 }
 
 #[inline(always)]
 fn push_separations_kernel(kdops: &KDops, pairs: &[[u32; 2]], separations: &mut Vec<f32>) {
-    for [a, b] in pairs {
+    separations.resize(pairs.len(), 0.0);
+    for ([a, b], result) in pairs.iter().zip(separations) {
         let (a, b) = (&kdops.tree[*a as usize], &kdops.tree[*b as usize]);
-        separations.push(separation(a, b) - kdops.rounding_error);
+        *result = separation(a, b) - kdops.rounding_error;
     }
 }
 

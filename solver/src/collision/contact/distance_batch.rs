@@ -7,6 +7,7 @@
 #![allow(clippy::inline_always, reason = "inside the loop over pairs")]
 
 use super::distance::{PARALLEL_TOLERANCE, point_triangle};
+use crate::collision::broad_phase::query::PairKind;
 use crate::geometry::field::Field;
 use crate::geometry::topology::Topology;
 use crate::platform::simd::{InstructionSet, Vectors, WIDTH, Wide, dispatch_wide, vectors_at};
@@ -99,80 +100,58 @@ fn select<L: Wide>(condition: L, yes: [L; 3], no: [L; 3]) -> [L; 3] {
     ]
 }
 
-/// Up to eight pairs, one per lane; lanes without a pair repeat the first.
+/// The nodes of a pair, those of its first primitive first.
 #[inline(always)]
-pub(super) fn fill_lanes(pairs: &[[u32; 2]]) -> [[u32; 2]; WIDTH] {
-    let mut lanes = [pairs[0]; WIDTH];
-    lanes[..pairs.len()].copy_from_slice(pairs);
-    lanes
-}
-
-/// Positions of node number `corner` of eight primitives, m.
-#[inline(always)]
-pub(super) fn corner_positions<L: Wide, const N: usize>(
-    positions: &Field,
-    nodes: &[[u32; N]; WIDTH],
-    corner: usize,
-) -> Vectors<L> {
-    let mut indices = [0; WIDTH];
-    for lane in 0..WIDTH {
-        indices[lane] = nodes[lane][corner];
+fn nodes_of(kind: PairKind, topology: &Topology, [first, second]: [u32; 2]) -> [u32; 4] {
+    match kind {
+        PairKind::NodeElement => {
+            let [a, b, c] = topology.triangles[second as usize];
+            [first, a, b, c]
+        }
+        PairKind::EdgeEdge => {
+            let [a, b] = topology.edges[first as usize];
+            let [c, d] = topology.edges[second as usize];
+            [a, b, c, d]
+        }
     }
-    vectors_at([&positions.x, &positions.y, &positions.z], &indices)
 }
 
 #[inline(always)]
-fn four_positions<L: Wide>(positions: &Field, nodes: &[[u32; 4]; WIDTH]) -> [Vectors<L>; 4] {
-    [
-        corner_positions(positions, nodes, 0),
-        corner_positions(positions, nodes, 1),
-        corner_positions(positions, nodes, 2),
-        corner_positions(positions, nodes, 3),
-    ]
-}
-
-#[inline(always)]
-fn edge_edge_kernel<L: Wide>(
+fn distances_kernel<L: Wide>(
+    kind: PairKind,
     topology: &Topology,
     positions: &Field,
     pairs: &[[u32; 2]],
     distances: &mut Vec<f64>,
 ) {
     for chunk in pairs.chunks(WIDTH) {
-        let lanes = fill_lanes(chunk);
-        let mut nodes = [[0; 4]; WIDTH];
+        // Lanes without a pair repeat the first.
+        let mut nodes = [[0; WIDTH]; 4];
         for lane in 0..WIDTH {
-            let [a, b] = topology.edges[lanes[lane][0] as usize];
-            let [c, d] = topology.edges[lanes[lane][1] as usize];
-            nodes[lane] = [a, b, c, d];
+            let pair = chunk[if lane < chunk.len() { lane } else { 0 }];
+            let of_pair = nodes_of(kind, topology, pair);
+            for corner in 0..4 {
+                nodes[corner][lane] = of_pair[corner];
+            }
         }
-        let values = segment_segment_squared::<L>(four_positions(positions, &nodes)).sqrt().lanes();
-        distances.extend_from_slice(&values.0[..chunk.len()]);
-    }
-}
-
-#[inline(always)]
-fn node_element_kernel<L: Wide>(
-    topology: &Topology,
-    positions: &Field,
-    pairs: &[[u32; 2]],
-    distances: &mut Vec<f64>,
-) {
-    for chunk in pairs.chunks(WIDTH) {
-        let lanes = fill_lanes(chunk);
-        let mut nodes = [[0; 4]; WIDTH];
-        for lane in 0..WIDTH {
-            let [a, b, c] = topology.triangles[lanes[lane][1] as usize];
-            nodes[lane] = [lanes[lane][0], a, b, c];
-        }
-        let values = point_triangle_squared::<L>(four_positions(positions, &nodes)).sqrt().lanes();
-        distances.extend_from_slice(&values.0[..chunk.len()]);
+        let columns: [&[f64]; 3] = [&positions.x, &positions.y, &positions.z];
+        let x = [
+            vectors_at::<L>(columns, &nodes[0]),
+            vectors_at(columns, &nodes[1]),
+            vectors_at(columns, &nodes[2]),
+            vectors_at(columns, &nodes[3]),
+        ];
+        let squared = match kind {
+            PairKind::NodeElement => point_triangle_squared(x),
+            PairKind::EdgeEdge => segment_segment_squared(x),
+        };
+        distances.extend_from_slice(&squared.sqrt().lanes().0[..chunk.len()]);
     }
 }
 
 dispatch_wide! {
-    /// Appends the distances (m) of pairs of edges at these positions (m) to `distances`.
-    pub fn edge_edge_distances / edge_edge_kernel(
+    fn distances_with_area / distances_kernel(
+        kind: PairKind,
         topology: &Topology,
         positions: &Field,
         pairs: &[[u32; 2]],
@@ -180,29 +159,20 @@ dispatch_wide! {
     )
 }
 
-dispatch_wide! {
-    fn node_element_distances_with_area / node_element_kernel(
-        topology: &Topology,
-        positions: &Field,
-        pairs: &[[u32; 2]],
-        distances: &mut Vec<f64>,
-    )
-}
-
-/// Appends the distances (m) of pairs of a node and an element at these positions (m) to `distances`.
-pub fn node_element_distances(
+/// Appends the distances (m) of pairs of one kind at these positions (m) to `distances`.
+pub fn distances(
     instruction_set: InstructionSet,
+    kind: PairKind,
     topology: &Topology,
     positions: &Field,
     pairs: &[[u32; 2]],
     distances: &mut Vec<f64>,
 ) {
     let before = distances.len();
-    node_element_distances_with_area(instruction_set, topology, positions, pairs, distances);
-    for (distance, [node, element]) in distances[before..].iter_mut().zip(pairs) {
-        if distance.is_nan() {
-            let [a, b, c] = topology.triangles[*element as usize];
-            let x = [*node, a, b, c].map(|node| positions.get(node as usize));
+    distances_with_area(instruction_set, kind, topology, positions, pairs, distances);
+    for (distance, pair) in distances[before..].iter_mut().zip(pairs) {
+        if kind == PairKind::NodeElement && distance.is_nan() {
+            let x = nodes_of(kind, topology, *pair).map(|node| positions.get(node as usize));
             *distance = point_triangle(&x).squared.sqrt();
         }
     }
@@ -233,19 +203,21 @@ mod tests {
                 (0..12).flat_map(|node| (0..4).map(move |element| [node, element])).collect();
             let at = |node: u32| points[node as usize];
             for instruction_set in InstructionSet::ALL {
-                let mut distances = Vec::new();
-                edge_edge_distances(instruction_set, &topology, &field, &edges, &mut distances);
-                for ([a, b], distance) in edges.iter().zip(&distances) {
+                let mut found = Vec::new();
+                distances(
+                    instruction_set, PairKind::EdgeEdge, &topology, &field, &edges, &mut found,
+                );
+                for ([a, b], distance) in edges.iter().zip(&found) {
                     let [p, q] = topology.edges[*a as usize].map(at);
                     let [r, s] = topology.edges[*b as usize].map(at);
                     let single = segment_segment(&[p, q, r, s]).squared.sqrt();
                     prop_assert_eq!(single.to_bits(), distance.to_bits(), "{} {}", single, distance);
                 }
-                distances.clear();
-                node_element_distances(
-                    instruction_set, &topology, &field, &elements, &mut distances,
+                found.clear();
+                distances(
+                    instruction_set, PairKind::NodeElement, &topology, &field, &elements, &mut found,
                 );
-                for ([node, element], distance) in elements.iter().zip(&distances) {
+                for ([node, element], distance) in elements.iter().zip(&found) {
                     let [a, b, c] = topology.triangles[*element as usize].map(at);
                     let single = point_triangle(&[at(*node), a, b, c]).squared.sqrt();
                     prop_assert_eq!(single.to_bits(), distance.to_bits(), "{} {}", single, distance);

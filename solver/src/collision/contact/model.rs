@@ -1,7 +1,7 @@
 //! The parameters of contact, and the distances that they lead to.
 
 use super::broad_phase_fault::BroadPhaseFault;
-use super::distance_batch::{edge_edge_distances, node_element_distances};
+use super::distance_batch::distances;
 use super::pair::{Pair, PairKind, vectors_of};
 use crate::collision::broad_phase::collision_mesh::{CollisionMesh, pairs_within_bounds};
 use crate::collision::broad_phase::kdop::KDops;
@@ -168,15 +168,10 @@ impl ContactModel {
         pairs: &[[u32; 2]],
         gaps: &mut Vec<f64>,
     ) {
-        let (instruction_set, topology) = (self.instruction_set, &self.mesh.topology);
-        match kind {
-            PairKind::NodeElement => {
-                node_element_distances(instruction_set, topology, positions, pairs, gaps);
-            }
-            PairKind::EdgeEdge if self.has_edge_contacts() => {
-                edge_edge_distances(instruction_set, topology, positions, pairs, gaps);
-            }
-            PairKind::EdgeEdge => gaps.resize(gaps.len() + pairs.len(), f64::INFINITY),
+        if kind == PairKind::EdgeEdge && !self.has_edge_contacts() {
+            gaps.resize(gaps.len() + pairs.len(), f64::INFINITY);
+        } else {
+            distances(self.instruction_set, kind, &self.mesh.topology, positions, pairs, gaps);
         }
     }
 }

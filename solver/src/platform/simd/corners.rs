@@ -5,13 +5,9 @@
 
 use super::{Vectors, WIDTH, Wide};
 
-/// Largest number of nodes: gather instructions take indices as signed 32-bit integers.
-const MAX_NODES: usize = 1 << 31;
-
 /// Nodes at the four corners of kites, eight kites a block.
 ///
-/// Invariant: every index in `blocks` is below `nodes`, and `nodes` is at most `MAX_NODES`. The
-/// kernels therefore do not check indices again.
+/// Invariant: every index in `blocks` is below `nodes`. The kernels therefore do not check indices again.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Corners {
     nodes: usize,
@@ -27,10 +23,9 @@ impl Corners {
     /// first of that block.
     ///
     /// # Panics
-    /// When a kite names a node at or above `nodes`, or `nodes` is above 2³¹.
+    /// When a kite names a node at or above `nodes`.
     pub fn new(kites: &[[u32; 4]], nodes: usize) -> Self {
         assert!(kites.iter().flatten().all(|node| (*node as usize) < nodes), "a node out of range");
-        assert!(nodes <= MAX_NODES, "more than 2^31 nodes");
         let block = |chunk: &[[u32; 4]]| {
             let node =
                 |corner: usize, lane: usize| chunk.get(lane).map_or(chunk[0][0], |t| t[corner]);
@@ -93,23 +88,29 @@ impl<'a> Columns<'a> {
         Self { corners, columns }
     }
 
-    /// The vectors at the four corners of a block's kites.
+    /// The vectors at the four corners of a block's kites from lane `first` on.
     #[inline(always)]
-    pub fn corners<L: Wide>(&self, block: usize) -> [Vectors<L>; 4] {
+    pub fn corners<L: Wide>(&self, block: usize, first: usize) -> [Vectors<L>; 4] {
         let [a, b, c, d] = &self.corners.blocks[block];
-        [self.gather(a), self.gather(b), self.gather(c), self.gather(d)]
+        [
+            self.gather(&a[first..]),
+            self.gather(&b[first..]),
+            self.gather(&c[first..]),
+            self.gather(&d[first..]),
+        ]
     }
 
-    /// The vectors at eight nodes of `self.corners`.
+    /// The vectors at the first of these nodes of `self.corners`.
     #[inline(always)]
     #[expect(
         unsafe_code,
         reason = "indices are checked in `Corners::new`, columns in `Columns::new`"
     )]
-    fn gather<L: Wide>(&self, nodes: &[u32; WIDTH]) -> Vectors<L> {
+    fn gather<L: Wide>(&self, nodes: &[u32]) -> Vectors<L> {
+        let nodes = &nodes[..L::COUNT];
         let [x, y, z] = self.columns;
         // SAFETY: `corners` alone calls this, with nodes of `self.corners`: each is below its number of
-        // nodes, which is at most 2^31 and at most the length of each column (both invariants).
+        // nodes, which is at most the length of each column (both invariants).
         unsafe {
             Vectors { x: L::gather(x, nodes), y: L::gather(y, nodes), z: L::gather(z, nodes) }
         }
@@ -135,7 +136,7 @@ pub fn nodes_of(triangles: &[[u32; 3]], start: usize) -> ([[u32; WIDTH]; 3], usi
 /// The vectors at these indices of three columns.
 ///
 /// # Panics
-/// When an index is not below the length of every column, or is 2³¹ or more.
+/// When an index is not below the length of every column.
 #[inline(always)]
 #[expect(unsafe_code, reason = "indices are checked here")]
 pub fn vectors_at<L: Wide>([x, y, z]: [&[f64]; 3], indices: &[u32; WIDTH]) -> Vectors<L> {
@@ -145,8 +146,7 @@ pub fn vectors_at<L: Wide>([x, y, z]: [&[f64]; 3], indices: &[u32; WIDTH]) -> Ve
     }
     let last = last as usize;
     assert!(last < x.len() && last < y.len() && last < z.len(), "an index out of range");
-    assert!(last < MAX_NODES, "an index of 2^31 or more");
-    // SAFETY: `last`, the largest index, is below the length of each column and below 2^31.
+    // SAFETY: `last`, the largest index, is below the length of each column.
     unsafe {
         Vectors { x: L::gather(x, indices), y: L::gather(y, indices), z: L::gather(z, indices) }
     }
@@ -177,7 +177,7 @@ impl NodeSum {
 }
 
 impl Corners {
-    /// Adds the forces and normals of a block's kites to their corners s, a, t, b: kite by kite, and
+    /// Adds the forces and normals of a block's kites, from a lane on, to their corners s, a, t, b: kite by kite, and
     /// for each kite corner by corner. `film` holds the forces on the four corners. Corners s and t
     /// receive the normal of the whole kite, a that of the first element, b that of the second.
     ///
@@ -187,7 +187,7 @@ impl Corners {
     #[expect(unsafe_code, reason = "indices are checked in `Corners::new`, the sums here")]
     pub fn scatter<L: Wide>(
         &self,
-        block: usize,
+        (block, first_lane): (usize, usize),
         film: &[Vectors<L>; 4],
         [whole, first, second]: &[Vectors<L>; 3],
         sums: &mut [NodeSum],
@@ -200,11 +200,12 @@ impl Corners {
             L::to_node_sums(&film[3], second),
         ];
         let nodes = &self.blocks[block];
-        for lane in 0..WIDTH {
+        for lane in 0..L::COUNT {
             for corner in 0..4 {
                 // SAFETY: every node is below `self.nodes` (invariant), and `sums` has at least as many
                 // entries (asserted above).
-                let sum = unsafe { sums.get_unchecked_mut(nodes[corner][lane] as usize) };
+                let sum =
+                    unsafe { sums.get_unchecked_mut(nodes[corner][first_lane + lane] as usize) };
                 sum.add(&rows[corner][lane]);
             }
         }

@@ -17,7 +17,7 @@ pub(crate) use dispatch;
 /// Defines `fn $name(instruction_set, arguments…)` as `dispatch!` does, for a kernel that is generic
 /// over [`Wide`](super::Wide): each instruction set runs it on its own vector type.
 ///
-/// This macro alone names the types of [`x86`](super::x86): it uses them only inside functions that
+/// This macro and the next alone name the types of [`x86`](super::x86): it uses them only inside functions that
 /// enable their target feature, entered only after detection. The safety of `x86` rests on that.
 macro_rules! dispatch_wide {
     ($(#[$meta:meta])* $vis:vis fn $name:ident / $kernel:ident $arguments:tt $(-> $ret:ty)?) => {
@@ -31,7 +31,21 @@ macro_rules! dispatch_wide {
 }
 pub(crate) use dispatch_wide;
 
-/// What both macros share: the kernels of AVX2, AVX-512 and scalar code, each compiled with its target feature.
+/// Defines `fn $name(instruction_set, arguments…)` as `dispatch_wide!` does, for a kernel that also runs on parts of a
+/// group: it needs more registers than AVX2 has for whole groups.
+macro_rules! dispatch_parts {
+    ($(#[$meta:meta])* $vis:vis fn $name:ident / $kernel:ident $arguments:tt $(-> $ret:ty)?) => {
+        $crate::platform::simd::select! {
+            $(#[$meta])* $vis fn $name $arguments $(-> $ret)?;
+            [$kernel::<$crate::platform::simd::x86::Avx2Half>]
+            [$kernel::<$crate::platform::simd::x86::Avx512>]
+            [$kernel::<$crate::platform::simd::Lanes>]
+        }
+    };
+}
+pub(crate) use dispatch_parts;
+
+/// What these macros share: the kernels of AVX2, AVX-512 and scalar code, each compiled with its target feature.
 macro_rules! select {
     (
         $(#[$meta:meta])* $vis:vis fn $name:ident ($($arg:ident : $ty:ty),* $(,)?) $(-> $ret:ty)?;

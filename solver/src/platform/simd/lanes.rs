@@ -133,7 +133,7 @@ impl Wide for Lanes {
     }
     #[inline(always)]
     #[expect(unsafe_code, reason = "the trait's contract")]
-    unsafe fn gather(column: &[f64], indices: &[u32; WIDTH]) -> Self {
+    unsafe fn gather(column: &[f64], indices: &[u32]) -> Self {
         let mut lanes = [0.0; WIDTH];
         for lane in 0..WIDTH {
             // SAFETY: the caller guarantees that every index is below the length of `column`.
@@ -142,9 +142,9 @@ impl Wide for Lanes {
         Self(lanes)
     }
     #[inline(always)]
-    fn from_node_sums(rows: &[NodeSum; WIDTH]) -> [Vectors; 2] {
+    fn from_node_sums(rows: &[NodeSum]) -> [Vectors; 2] {
         let mut columns = [Vectors::<Self>::default(); 2];
-        for (lane, row) in rows.iter().enumerate() {
+        for (lane, row) in rows[..WIDTH].iter().enumerate() {
             for (vectors, [x, y, z, _]) in columns.iter_mut().zip([row.film, row.normal]) {
                 (vectors.x.0[lane], vectors.y.0[lane], vectors.z.0[lane]) = (x, y, z);
             }

@@ -22,7 +22,7 @@ pub(crate) mod x86;
 
 pub use column::Column;
 pub use corners::{Columns, Corners, NodeSum, nodes_of, vectors_at};
-pub(crate) use dispatch::{dispatch, dispatch_wide, select};
+pub(crate) use dispatch::{dispatch, dispatch_parts, dispatch_wide, select};
 pub use lanes::Lanes;
 pub use vectors::Vectors;
 
@@ -90,13 +90,15 @@ pub trait Wide:
     + Mul<f64, Output = Self>
     + Neg<Output = Self>
 {
+    /// Number of values: those of a group, or a part of them.
+    const COUNT: usize = WIDTH;
     /// One value in every lane.
     fn splat(value: f64) -> Self;
-    /// Eight values from `column[first..]`.
+    /// The values from `column[first..]`.
     fn load(column: &[f64], first: usize) -> Self;
-    /// Writes eight values to `column[first..]`.
+    /// Writes the values to `column[first..]`.
     fn store(self, column: &mut [f64], first: usize);
-    /// The values as a plain array.
+    /// The values as a plain array, zero beyond their number.
     #[inline(always)]
     fn lanes(self) -> Lanes {
         let mut lanes = [0.0; WIDTH];
@@ -118,13 +120,13 @@ pub trait Wide:
     /// The values at these indices of a column.
     ///
     /// # Safety
-    /// Every index must be below the length of `column` and below 2^31.
+    /// There must be an index for each value, below the length of `column`.
     #[expect(unsafe_code, reason = "indices are checked once, not at each call")]
-    unsafe fn gather(column: &[f64], indices: &[u32; WIDTH]) -> Self;
-    /// Transposes eight film forces and eight normals to one [`NodeSum`] a lane.
+    unsafe fn gather(column: &[f64], indices: &[u32]) -> Self;
+    /// Transposes film forces and normals to one [`NodeSum`] a lane; zero beyond their number.
     fn to_node_sums(film: &Vectors<Self>, normal: &Vectors<Self>) -> [NodeSum; WIDTH];
-    /// Transposes eight sums to their film forces and their normals.
-    fn from_node_sums(rows: &[NodeSum; WIDTH]) -> [Vectors<Self>; 2];
+    /// Transposes as many sums to their film forces and their normals.
+    fn from_node_sums(rows: &[NodeSum]) -> [Vectors<Self>; 2];
 }
 
 #[cfg(test)]

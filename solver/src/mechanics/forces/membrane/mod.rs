@@ -21,6 +21,7 @@ use crate::platform::simd::{InstructionSet, NodeSum};
 mod creep_strain;
 mod element_history;
 mod elements;
+mod response;
 mod strain;
 
 pub use creep_strain::{CreepStep, CreepStrain};

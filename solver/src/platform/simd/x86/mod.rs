@@ -22,9 +22,13 @@ mod transpose;
 
 use transpose::{from_rows_of_four, interleave_pair, to_half_rows_of_eight, to_rows_of_four};
 
-/// Eight values in two registers: lanes 0 to 3 and 4 to 7. Invariant: AVX2 is present.
+/// Four values in one register: half a group, for a kernel that needs many registers. Invariant: AVX2 is present.
 #[derive(Debug, Clone, Copy)]
-pub struct Avx2(__m256d, __m256d);
+pub struct Avx2Half(__m256d);
+
+/// Eight values in two registers: lanes 0 to 3 and 4 to 7.
+#[derive(Debug, Clone, Copy)]
+pub struct Avx2(Avx2Half, Avx2Half);
 
 /// Eight values in one register. Invariant: AVX-512 F and DQ are present.
 #[derive(Debug, Clone, Copy)]
@@ -32,12 +36,19 @@ pub struct Avx512(__m512d);
 
 macro_rules! operators {
     ($trait:ident, $method:ident, $avx2:ident, $avx512:ident) => {
-        impl $trait for Avx2 {
+        impl $trait for Avx2Half {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
                 // SAFETY: AVX2 is present (module invariant).
-                unsafe { Self($avx2(self.0, other.0), $avx2(self.1, other.1)) }
+                unsafe { Self($avx2(self.0, other.0)) }
+            }
+        }
+        impl $trait for Avx2 {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(self.0.$method(other.0), self.1.$method(other.1))
             }
         }
         impl $trait for Avx512 {
@@ -54,19 +65,27 @@ operators!(Add, add, _mm256_add_pd, _mm512_add_pd);
 operators!(Sub, sub, _mm256_sub_pd, _mm512_sub_pd);
 operators!(Mul, mul, _mm256_mul_pd, _mm512_mul_pd);
 
-impl Mul<f64> for Avx2 {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, factor: f64) -> Self {
-        self * Self::splat(factor)
-    }
+macro_rules! scaled {
+    ($type:ident) => {
+        impl Mul<f64> for $type {
+            type Output = Self;
+            #[inline(always)]
+            fn mul(self, factor: f64) -> Self {
+                self * Self::splat(factor)
+            }
+        }
+    };
 }
+scaled!(Avx2Half);
+scaled!(Avx2);
+scaled!(Avx512);
 
-impl Mul<f64> for Avx512 {
+impl Neg for Avx2Half {
     type Output = Self;
     #[inline(always)]
-    fn mul(self, factor: f64) -> Self {
-        self * Self::splat(factor)
+    fn neg(self) -> Self {
+        // SAFETY: AVX2 is present (module invariant).
+        unsafe { Self(_mm256_xor_pd(self.0, _mm256_set1_pd(-0.0))) }
     }
 }
 
@@ -74,11 +93,7 @@ impl Neg for Avx2 {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        // SAFETY: AVX2 is present (module invariant).
-        unsafe {
-            let sign = _mm256_set1_pd(-0.0);
-            Self(_mm256_xor_pd(self.0, sign), _mm256_xor_pd(self.1, sign))
-        }
+        Self(-self.0, -self.1)
     }
 }
 
@@ -91,68 +106,78 @@ impl Neg for Avx512 {
     }
 }
 
-impl Wide for Avx2 {
-    #[inline(always)]
-    fn splat(value: f64) -> Self {
-        // SAFETY: AVX2 is present (module invariant).
-        unsafe { Self(_mm256_set1_pd(value), _mm256_set1_pd(value)) }
-    }
-
-    #[inline(always)]
-    fn load(column: &[f64], first: usize) -> Self {
-        let values = column[first..first + WIDTH].as_ptr();
-        // SAFETY: AVX2 is present (module invariant); `values` points to eight values.
-        unsafe { Self(_mm256_loadu_pd(values), _mm256_loadu_pd(values.add(4))) }
-    }
-
-    #[inline(always)]
-    fn store(self, column: &mut [f64], first: usize) {
-        let values = column[first..first + WIDTH].as_mut_ptr();
-        // SAFETY: AVX2 is present (module invariant); `values` points to eight values, borrowed mutably.
-        unsafe {
-            _mm256_storeu_pd(values, self.0);
-            _mm256_storeu_pd(values.add(4), self.1);
+/// The operations that are one instruction, and loads and stores, of one register.
+macro_rules! one_register {
+    ($splat:ident, $load:ident, $store:ident, $sqrt:ident, $over:ident, $max:ident) => {
+        #[inline(always)]
+        fn splat(value: f64) -> Self {
+            // SAFETY: the instruction set is present (module invariant).
+            unsafe { Self($splat(value)) }
         }
-    }
 
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        // SAFETY: AVX2 is present (module invariant).
-        unsafe { Self(_mm256_sqrt_pd(self.0), _mm256_sqrt_pd(self.1)) }
-    }
+        #[inline(always)]
+        fn load(column: &[f64], first: usize) -> Self {
+            let values = column[first..first + Self::COUNT].as_ptr();
+            // SAFETY: the instruction set is present (module invariant); `values` points to as many values.
+            unsafe { Self($load(values)) }
+        }
 
-    #[inline(always)]
-    fn over(self, other: Self) -> Self {
-        // SAFETY: AVX2 is present (module invariant).
-        unsafe { Self(_mm256_div_pd(self.0, other.0), _mm256_div_pd(self.1, other.1)) }
-    }
+        #[inline(always)]
+        fn store(self, column: &mut [f64], first: usize) {
+            let values = column[first..first + Self::COUNT].as_mut_ptr();
+            // SAFETY: the instruction set is present (module invariant); `values` points to as many values,
+            // borrowed mutably.
+            unsafe { $store(values, self.0) }
+        }
 
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        // SAFETY: AVX2 is present (module invariant).
-        unsafe { Self(_mm256_max_pd(self.0, other.0), _mm256_max_pd(self.1, other.1)) }
-    }
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            // SAFETY: the instruction set is present (module invariant).
+            unsafe { Self($sqrt(self.0)) }
+        }
+
+        #[inline(always)]
+        fn over(self, other: Self) -> Self {
+            // SAFETY: the instruction set is present (module invariant).
+            unsafe { Self($over(self.0, other.0)) }
+        }
+
+        #[inline(always)]
+        fn max(self, other: Self) -> Self {
+            // SAFETY: the instruction set is present (module invariant).
+            unsafe { Self($max(self.0, other.0)) }
+        }
+    };
+}
+
+impl Wide for Avx2Half {
+    const COUNT: usize = WIDTH / 2;
+
+    one_register!(
+        _mm256_set1_pd,
+        _mm256_loadu_pd,
+        _mm256_storeu_pd,
+        _mm256_sqrt_pd,
+        _mm256_div_pd,
+        _mm256_max_pd
+    );
 
     #[inline(always)]
     fn if_positive(self, yes: Self, no: Self) -> Self {
         // SAFETY: AVX2 is present (module invariant).
         unsafe {
-            let zero = _mm256_setzero_pd();
-            let low = _mm256_cmp_pd::<_CMP_GT_OQ>(self.0, zero);
-            let high = _mm256_cmp_pd::<_CMP_GT_OQ>(self.1, zero);
-            Self(_mm256_blendv_pd(no.0, yes.0, low), _mm256_blendv_pd(no.1, yes.1, high))
+            let positive = _mm256_cmp_pd::<_CMP_GT_OQ>(self.0, _mm256_setzero_pd());
+            Self(_mm256_blendv_pd(no.0, yes.0, positive))
         }
     }
 
     #[inline(always)]
-    unsafe fn gather(column: &[f64], indices: &[u32; WIDTH]) -> Self {
-        // SAFETY: AVX2 is present (module invariant). `indices` holds two times four indices; the caller
-        // guarantees that each is below the length of `column` and below 2^31, so positive as an `i32`.
+    unsafe fn gather(column: &[f64], indices: &[u32]) -> Self {
+        // SAFETY: AVX2 is present (module invariant); the caller guarantees that four indices are below the
+        // length of `column`.
         unsafe {
-            let (values, indices) = (column.as_ptr(), indices.as_ptr());
-            let low = _mm_loadu_si128(indices.cast());
-            let high = _mm_loadu_si128(indices.add(4).cast());
-            Self(_mm256_i32gather_pd::<8>(values, low), _mm256_i32gather_pd::<8>(values, high))
+            let value = |lane: usize| *column.get_unchecked(indices[lane] as usize);
+            Self(_mm256_setr_pd(value(0), value(1), value(2), value(3)))
         }
     }
 
@@ -162,73 +187,102 @@ impl Wide for Avx2 {
         // SAFETY: AVX2 is present (module invariant); `film` and `normal` of a sum are four values each,
         // and `rows` is borrowed mutably.
         unsafe {
-            let film = [
-                to_rows_of_four(film.x.0, film.y.0, film.z.0),
-                to_rows_of_four(film.x.1, film.y.1, film.z.1),
-            ];
-            let normal = [
-                to_rows_of_four(normal.x.0, normal.y.0, normal.z.0),
-                to_rows_of_four(normal.x.1, normal.y.1, normal.z.1),
-            ];
-            for lane in 0..WIDTH {
-                _mm256_storeu_pd(rows[lane].film.as_mut_ptr(), film[lane / 4][lane % 4]);
-                _mm256_storeu_pd(rows[lane].normal.as_mut_ptr(), normal[lane / 4][lane % 4]);
+            let film = to_rows_of_four(film.x.0, film.y.0, film.z.0);
+            let normal = to_rows_of_four(normal.x.0, normal.y.0, normal.z.0);
+            for lane in 0..Self::COUNT {
+                _mm256_storeu_pd(rows[lane].film.as_mut_ptr(), film[lane]);
+                _mm256_storeu_pd(rows[lane].normal.as_mut_ptr(), normal[lane]);
             }
         }
         rows
     }
 
     #[inline(always)]
-    fn from_node_sums([a, b, c, d, e, f, g, h]: &[NodeSum; WIDTH]) -> [Vectors<Self>; 2] {
+    fn from_node_sums(rows: &[NodeSum]) -> [Vectors<Self>; 2] {
+        let [a, b, c, d] = [&rows[0], &rows[1], &rows[2], &rows[3]];
         // SAFETY: AVX2 is present (module invariant).
         unsafe {
             let [x, y, z] = from_rows_of_four(&a.film, &b.film, &c.film, &d.film);
-            let [u, v, w] = from_rows_of_four(&e.film, &f.film, &g.film, &h.film);
-            let film = Vectors { x: Self(x, u), y: Self(y, v), z: Self(z, w) };
+            let film = Vectors { x: Self(x), y: Self(y), z: Self(z) };
             let [x, y, z] = from_rows_of_four(&a.normal, &b.normal, &c.normal, &d.normal);
-            let [u, v, w] = from_rows_of_four(&e.normal, &f.normal, &g.normal, &h.normal);
-            [film, Vectors { x: Self(x, u), y: Self(y, v), z: Self(z, w) }]
+            [film, Vectors { x: Self(x), y: Self(y), z: Self(z) }]
         }
     }
 }
 
-impl Wide for Avx512 {
+impl Avx2 {
+    /// Both halves of vectors as eight.
+    #[inline(always)]
+    fn joined(low: Vectors<Avx2Half>, high: Vectors<Avx2Half>) -> Vectors<Self> {
+        Vectors { x: Self(low.x, high.x), y: Self(low.y, high.y), z: Self(low.z, high.z) }
+    }
+}
+
+/// An operation on both halves.
+macro_rules! on_both {
+    ($($method:ident($($other:ident),*))*) => {$(
+        #[inline(always)]
+        fn $method(self, $($other: Self),*) -> Self {
+            Self(self.0.$method($($other.0),*), self.1.$method($($other.1),*))
+        }
+    )*};
+}
+
+impl Wide for Avx2 {
+    on_both! { sqrt() over(other) max(other) if_positive(yes, no) }
+
     #[inline(always)]
     fn splat(value: f64) -> Self {
-        // SAFETY: AVX-512 is present (module invariant).
-        unsafe { Self(_mm512_set1_pd(value)) }
+        Self(Wide::splat(value), Wide::splat(value))
     }
 
     #[inline(always)]
     fn load(column: &[f64], first: usize) -> Self {
-        // SAFETY: AVX-512 is present (module invariant); the pointer is to a slice of eight values.
-        unsafe { Self(_mm512_loadu_pd(column[first..first + WIDTH].as_ptr())) }
+        Self(Wide::load(column, first), Wide::load(column, first + Avx2Half::COUNT))
     }
 
     #[inline(always)]
     fn store(self, column: &mut [f64], first: usize) {
-        // SAFETY: AVX-512 is present (module invariant); the pointer is to a slice of eight values,
-        // borrowed mutably.
-        unsafe { _mm512_storeu_pd(column[first..first + WIDTH].as_mut_ptr(), self.0) }
+        self.0.store(column, first);
+        self.1.store(column, first + Avx2Half::COUNT);
     }
 
     #[inline(always)]
-    fn sqrt(self) -> Self {
-        // SAFETY: AVX-512 is present (module invariant).
-        unsafe { Self(_mm512_sqrt_pd(self.0)) }
+    unsafe fn gather(column: &[f64], indices: &[u32]) -> Self {
+        // SAFETY: the caller guarantees that eight indices are below the length of `column`.
+        unsafe {
+            let (low, high) = indices.split_at(Avx2Half::COUNT);
+            Self(Wide::gather(column, low), Wide::gather(column, high))
+        }
     }
 
     #[inline(always)]
-    fn over(self, other: Self) -> Self {
-        // SAFETY: AVX-512 is present (module invariant).
-        unsafe { Self(_mm512_div_pd(self.0, other.0)) }
+    fn to_node_sums(film: &Vectors<Self>, normal: &Vectors<Self>) -> [NodeSum; WIDTH] {
+        let low = |v: &Vectors<Self>| Vectors { x: v.x.0, y: v.y.0, z: v.z.0 };
+        let high = |v: &Vectors<Self>| Vectors { x: v.x.1, y: v.y.1, z: v.z.1 };
+        let mut rows = Wide::to_node_sums(&low(film), &low(normal));
+        let others = Wide::to_node_sums(&high(film), &high(normal));
+        rows[Avx2Half::COUNT..].copy_from_slice(&others[..Avx2Half::COUNT]);
+        rows
     }
 
     #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        // SAFETY: AVX-512 is present (module invariant).
-        unsafe { Self(_mm512_max_pd(self.0, other.0)) }
+    fn from_node_sums(rows: &[NodeSum]) -> [Vectors<Self>; 2] {
+        let [film, normal] = Wide::from_node_sums(&rows[..Avx2Half::COUNT]);
+        let [other_film, other_normal] = Wide::from_node_sums(&rows[Avx2Half::COUNT..]);
+        [Self::joined(film, other_film), Self::joined(normal, other_normal)]
     }
+}
+
+impl Wide for Avx512 {
+    one_register!(
+        _mm512_set1_pd,
+        _mm512_loadu_pd,
+        _mm512_storeu_pd,
+        _mm512_sqrt_pd,
+        _mm512_div_pd,
+        _mm512_max_pd
+    );
 
     #[inline(always)]
     fn if_positive(self, yes: Self, no: Self) -> Self {
@@ -240,12 +294,21 @@ impl Wide for Avx512 {
     }
 
     #[inline(always)]
-    unsafe fn gather(column: &[f64], indices: &[u32; WIDTH]) -> Self {
-        // SAFETY: AVX-512 is present (module invariant). `indices` holds eight indices; the caller
-        // guarantees that each is below the length of `column` and below 2^31, so positive as an `i32`.
+    unsafe fn gather(column: &[f64], indices: &[u32]) -> Self {
+        // SAFETY: AVX-512 is present (module invariant); the caller guarantees that eight indices are below
+        // the length of `column`.
         unsafe {
-            let indices = _mm256_loadu_si256(indices.as_ptr().cast());
-            Self(_mm512_i32gather_pd::<8>(indices, column.as_ptr()))
+            let value = |lane: usize| *column.get_unchecked(indices[lane] as usize);
+            Self(_mm512_setr_pd(
+                value(0),
+                value(1),
+                value(2),
+                value(3),
+                value(4),
+                value(5),
+                value(6),
+                value(7),
+            ))
         }
     }
 
@@ -271,7 +334,8 @@ impl Wide for Avx512 {
     }
 
     #[inline(always)]
-    fn from_node_sums(rows: &[NodeSum; WIDTH]) -> [Vectors<Self>; 2] {
+    fn from_node_sums(rows: &[NodeSum]) -> [Vectors<Self>; 2] {
+        let rows = &rows[..WIDTH];
         // SAFETY: AVX-512 is present (module invariant).
         unsafe {
             // A pair of rows gives film x, film z, normal x, normal z of its two lanes in the first
