@@ -6,13 +6,13 @@
 //!
 //! The film is the paper's capsule from `scenes/capsule.json`. It runs from the stowed shape as in `billow solve`. From
 //! three states of the motion the same steps are repeated, alternately with a clock in every stage and without. The time
-//! of a stage is its minimum over the repeats, the whole is the minimum without clocks: other load only adds time.
+//! of a stage is its minimum over the repeats, the whole is the minimum without clocks: other load only adds time. A
+//! second table has the same as multiples of the floor of the membrane pass ([`floor`]).
 
 use std::io::Write;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use billow_solver::integrators::FilmSimulation;
 use billow_solver::models::film::FilmRun;
 use billow_solver::models::run::{Model, Observer, Progress, Run};
 use billow_solver::output::outcome::Stop;
@@ -29,6 +29,8 @@ use billow_study::scene::file::SceneFile;
 
 use crate::cases::rig::stopped;
 use crate::output::Options;
+
+mod floor;
 
 /// The shipped scene.
 const SCENE: &str = include_str!("../../../scenes/capsule.json");
@@ -68,20 +70,33 @@ pub struct Args {
 /// Runs `billow-checks bench`. A signal ends it without figures.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let set = instruction_set::selected()?;
-    let (mut stages, mut runs) = (Vec::new(), Vec::new());
+    let (mut stages, mut multiples, mut runs) = (Vec::new(), Vec::new(), Vec::new());
+    let arithmetic = floor::arithmetic(set);
     for n in args.subdivisions.iter().copied() {
         let end = args.end_time.unwrap_or(if n <= 8 { 0.3 } else { 0.1 });
         args.options.note(&format!("n {n}, {end} s"));
         let mut capsule = Capsule::new(n, &args.set, set)?;
+        let streaming = floor::streaming(capsule.film.elements());
         for (state, time) in [("stowed", 0.0), ("rising", RISING), ("end", end)] {
             if time <= end {
                 capsule.run_to(time)?;
-                stages.push(capsule.stages(state)?);
+                let costs = capsule.stages()?;
+                let at =
+                    [("subdivisions", n.into()), ("state", state.into()), ("time", time.into())];
+                let row = |factor: f64| -> Row {
+                    let costs = costs.iter().map(|(name, cost)| (*name, (factor * cost).into()));
+                    at.iter().cloned().chain(costs).collect()
+                };
+                stages.push(row(1.0));
+                let mut multiple = row(1.0 / arithmetic.unwrap_or(0.0).max(streaming));
+                multiple
+                    .extend([("arithmetic", arithmetic.into()), ("streaming", streaming.into())]);
+                multiples.push(multiple);
             }
         }
         runs.push(capsule.row());
     }
-    for rows in [stages, runs] {
+    for rows in [stages, multiples, runs] {
         print(&rows, args.options.format(), out)?;
     }
     Ok(())
@@ -180,17 +195,15 @@ impl Capsule {
         ]
     }
 
-    /// The cost of each stage of a step from the present state.
-    fn stages(&self, name: &str) -> Result<Row> {
+    /// The cost of each stage of a step from the present state, and of a whole step, ns an element.
+    fn stages(&self) -> Result<Vec<(&'static str, f64)>> {
         let steps = STEPS[usize::from(self.film.elements() > LARGE)];
-        let now = self.film.view().state.time;
         let mut least = [f64::INFINITY; Stage::ALL.len()];
-        let (mut whole, mut step) = (f64::INFINITY, f64::NAN);
+        let mut whole = f64::INFINITY;
         for _ in 0..REPEATS {
             let start = Instant::now();
-            let film = self.take_steps(steps, &mut Untimed)?;
+            self.take_steps(steps, &mut Untimed)?;
             whole = whole.min(self.cost(start.elapsed().as_secs_f64(), steps));
-            step = (film.view().state.time - now) / steps as f64;
             let mut clock = Clock::default();
             self.take_steps(steps, &mut clock)?;
             clock.stop();
@@ -198,24 +211,18 @@ impl Capsule {
                 *least = least.min(self.cost(total.as_secs_f64(), steps));
             }
         }
-        let mut row: Row = vec![
-            ("subdivisions", self.subdivisions.into()),
-            ("state", name.into()),
-            ("time", now.into()),
-        ];
-        row.extend(Stage::ALL.iter().zip(least).map(|(stage, cost)| (stage.name(), cost.into())));
-        row.extend([("whole", whole.into()), ("steps_per_second", (1.0 / step).into())]);
-        Ok(row)
+        let stages = Stage::ALL.iter().map(|stage| (stage.name(), least[*stage as usize]));
+        Ok(stages.chain([("whole", whole)]).collect())
     }
 
-    /// A copy of the film after a number of steps.
-    fn take_steps(&self, mut steps: u64, stopwatch: &mut dyn Stopwatch) -> Result<FilmSimulation> {
+    /// Takes a number of steps with a copy of the film.
+    fn take_steps(&self, mut steps: u64, stopwatch: &mut dyn Stopwatch) -> Result<()> {
         let mut film = self.film.film.clone();
         let now = film.view().state.time;
         let phase = self.timeline.phase(now, now + self.timeline.sample_interval);
         film.advance_timed(now + MAX_TIME, &phase, &mut steps, stopwatch)
             .map_err(|failure| Error::JobsFailed(stopped(&failure)))?;
-        Ok(film)
+        Ok(())
     }
 }
 
