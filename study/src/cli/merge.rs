@@ -97,7 +97,7 @@ fn print(folder: &Path, merged: &Merged, format: Format, out: &mut dyn Write) ->
     let results = existing(folder)?;
     let stored = Stored::read(results)?;
     let mut counts = Counts::default();
-    for point in &stored.points {
+    for point in stored.points.iter() {
         counts.add_cells(&stored.cells(point));
     }
     let root = folder.display();

@@ -78,7 +78,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
 impl<'a> Status<'a> {
     fn new(stored: &'a Stored<'a>, threads: usize) -> Result<Self> {
         let (mut counts, mut seconds, mut timed) = (Counts::default(), 0.0, 0);
-        for point in &stored.points {
+        for point in stored.points.iter() {
             let cells = stored.cells(point);
             counts.add_cells(&cells);
             if let Some(wall) = cells.number(ColumnId::WallSeconds) {

@@ -128,7 +128,7 @@ fn refuse_queued(results: &Results<'_>) -> Result<()> {
 fn missing(study: &Study, results: &Results<'_>) -> Result<Vec<Job>> {
     let journal = results.journal()?;
     let mut jobs = Vec::new();
-    for point in stored::planned(study, &journal) {
+    for point in stored::planned(study, &journal).iter() {
         let id = &point.job.id;
         let record = journal.records.get(id);
         let is_missing = match record {
@@ -136,7 +136,7 @@ fn missing(study: &Study, results: &Results<'_>) -> Result<Vec<Job>> {
             None => true,
         };
         if point.infeasible.is_none() && is_missing {
-            jobs.push(point.job);
+            jobs.push(point.job.clone());
         }
     }
     Ok(jobs)

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::num::NonZero;
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use billow_solver::mechanics::material::Regime;
@@ -107,9 +108,14 @@ pub fn frames(number: u32, count: u32) -> Frames {
     }
 }
 
-/// A plan of `jobs` jobs, whose third point is infeasible.
+/// A plan of these [`points`].
 pub fn generation(jobs: u32) -> Generation {
-    let points = (0..jobs)
+    Generation { number: 0, points: Arc::new(points(jobs)) }
+}
+
+/// Points of `jobs` jobs, of which the third is infeasible.
+pub fn points(jobs: u32) -> Vec<Point> {
+    (0..jobs)
         .map(|number| Point {
             job: job(number),
             infeasible: (number == 2).then(|| Infeasible {
@@ -120,15 +126,14 @@ pub fn generation(jobs: u32) -> Generation {
             searched: Searched::No,
             merged: Vec::new(),
         })
-        .collect();
-    Generation { number: 0, points }
+        .collect()
 }
 
 /// The table of a run of such a plan. The folder holds it as a file.
 pub fn table(root: &Path, jobs: u32) -> Table {
     let results = Results::new(&Disk, root);
     let records = results.journal().unwrap().records;
-    let table = Table::build(&generation(jobs).points, &records, &|_| String::new());
+    let table = Table::build(&points(jobs), &records, &|_| String::new());
     assert_eq!(results.holds_table(table.clone()).unwrap(), Some(true));
     table
 }

@@ -4,6 +4,7 @@
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
@@ -35,7 +36,7 @@ pub struct Stored<'a> {
     /// Its journals.
     pub journal: Journal,
     /// Every point planned so far, in plan order.
-    pub points: Vec<Point>,
+    pub points: Arc<Vec<Point>>,
 }
 
 impl<'a> Stored<'a> {
@@ -240,8 +241,8 @@ pub fn other_physics(points: &[Point], records: &BTreeMap<JobId, Record>) -> BTr
 }
 
 /// Every point that the study plans with these finished jobs: generation after generation, as in a run.
-pub fn planned(study: &Study, journal: &Journal) -> Vec<Point> {
-    let mut points: Vec<Point> = Vec::new();
+pub fn planned(study: &Study, journal: &Journal) -> Arc<Vec<Point>> {
+    let mut points = Arc::default();
     let mut last = None;
     let mut finished = Vec::new();
     while let Some(generation) = plan::next_jobs(study, &finished)
@@ -264,7 +265,7 @@ mod tests {
 
     #[test]
     fn unplanned_jobs_of_another_physics_version_are_counted() {
-        let all = fixture::generation(5).points;
+        let all = fixture::points(5);
         let mut records = BTreeMap::new();
         for (number, point) in all.iter().enumerate() {
             let mut cells = Cells::new(Status::Done);

@@ -31,6 +31,7 @@ mod units;
 
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::Arc;
 
 use crate::input::json::Json;
 use crate::input::keys::STUDY;
@@ -88,7 +89,7 @@ pub struct Study {
     result_limits: Vec<ResultLimit>,
     /// Its points in plan order: those of the product that the filter keeps, the first axis slowest, then
     /// the single points, which it does not concern.
-    points: Vec<Point>,
+    points: Arc<Vec<Point>>,
     /// Number of points of the product that the filter removed.
     filtered: usize,
 }
@@ -174,7 +175,7 @@ impl Study {
             settings,
             grid,
             result_limits,
-            points,
+            points: Arc::new(points),
             filtered,
         })
     }
@@ -260,7 +261,7 @@ impl Study {
 
     /// The points of the study, in plan order: those of the product that the filter keeps, and the single
     /// points.
-    pub(crate) fn points(&self) -> &[Point] {
+    pub(crate) fn points(&self) -> &Arc<Vec<Point>> {
         &self.points
     }
 

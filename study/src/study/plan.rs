@@ -4,7 +4,8 @@
 //! search has several. A resumed study replays them.
 
 use std::collections::hash_map::Entry;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
+use std::sync::Arc;
 
 use crate::job::JobId;
 use crate::job::point::Point;
@@ -17,8 +18,8 @@ use crate::study::{Border, Study};
 pub struct Generation {
     /// 0 for the first.
     pub number: u32,
-    /// Points in plan order.
-    pub points: Vec<Point>,
+    /// Points in plan order; those of the study itself where none share a job.
+    pub points: Arc<Vec<Point>>,
 }
 
 /// Numbers of points and jobs of a plan: points = jobs + duplicates + infeasible.
@@ -72,7 +73,7 @@ pub fn next_jobs(study: &Study, finished: &[FinishedRow]) -> Option<Generation> 
     }
     let mut replay = Replay::new(study, finished)?;
     for number in 1.. {
-        let points = replay.next_points();
+        let points = Arc::new(replay.next_points());
         if points.is_empty() {
             break;
         }
@@ -86,14 +87,15 @@ pub fn next_jobs(study: &Study, finished: &[FinishedRow]) -> Option<Generation> 
 
 /// Adds a generation to the points planned before. A job that is planned already keeps its place and its
 /// result, and gets the parameters of the new point.
-pub fn add_generation(points: &mut Vec<Point>, generation: Generation) {
+pub fn add_generation(points: &mut Arc<Vec<Point>>, generation: Generation) {
     if points.is_empty() {
         *points = generation.points;
         return;
     }
     let known = points.iter().enumerate().map(|(index, point)| (point.job.id.clone(), index));
     let known: HashMap<JobId, usize> = known.collect();
-    for point in generation.points {
+    let points = Arc::make_mut(points);
+    for point in Arc::unwrap_or_clone(generation.points) {
         match known.get(&point.job.id) {
             Some(index) => {
                 points[*index].merged.push(point.job.parameters);
@@ -117,10 +119,14 @@ pub fn borders(study: &Study, finished: &[FinishedRow]) -> Vec<Border> {
 }
 
 /// A generation of these points. Points with the same job are merged into the first of them.
-pub(super) fn generation(number: u32, planned: &[Point]) -> Generation {
+pub(super) fn generation(number: u32, planned: &Arc<Vec<Point>>) -> Generation {
+    let jobs: HashSet<&JobId> = planned.iter().map(|point| &point.job.id).collect();
+    if jobs.len() == planned.len() {
+        return Generation { number, points: Arc::clone(planned) };
+    }
     let mut points: Vec<Point> = Vec::with_capacity(planned.len());
     let mut positions: HashMap<&JobId, usize> = HashMap::with_capacity(planned.len());
-    for point in planned {
+    for point in planned.iter() {
         match positions.entry(&point.job.id) {
             Entry::Occupied(entry) => {
                 points[*entry.get()].merged.push(point.job.parameters.clone());
@@ -131,5 +137,5 @@ pub(super) fn generation(number: u32, planned: &[Point]) -> Generation {
             }
         }
     }
-    Generation { number, points }
+    Generation { number, points: Arc::new(points) }
 }

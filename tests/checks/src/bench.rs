@@ -7,7 +7,7 @@
 //! The film is the paper's capsule from `scenes/capsule.json`. It runs from the stowed shape as in `billow solve`. From
 //! three states of the motion the same steps are repeated, alternately with a clock in every stage and without. The time
 //! of a stage is its minimum over the repeats, the whole is the minimum without clocks: other load only adds time. A
-//! second table has the same as multiples of the floor of the membrane pass ([`floor`]).
+//! second table has the same as multiples of the floor of the membrane pass (`floor`).
 
 use std::io::Write;
 use std::path::Path;

@@ -13,14 +13,21 @@ fn bench_has_every_stage_and_run() {
     let text = Folder::new().stdout(&flags);
     let parts: Vec<Vec<Value>> =
         serde_json::Deserializer::from_str(&text).into_iter().collect::<Result<_, _>>().unwrap();
-    let [stages, runs] = parts.as_slice() else { panic!("{text}") };
+    let [stages, multiples, runs] = parts.as_slice() else { panic!("{text}") };
     let states: Vec<&str> = stages.iter().filter_map(|row| row["state"].as_str()).collect();
     assert_eq!(states, ["stowed", "rising", "end"].repeat(2));
     for row in stages {
         // Broad phase and monitor may have no work in a short run; their columns are still present.
         assert!(Stage::ALL.iter().all(|stage| row[stage.name()].as_f64() >= Some(0.0)), "{row}");
-        let positive = ["membrane", "update", "whole", "steps_per_second"];
+        let positive = ["membrane", "update", "whole"];
         assert!(positive.iter().all(|name| row[*name].as_f64() > Some(0.0)), "{row}");
+    }
+    for (row, multiple) in stages.iter().zip(multiples) {
+        let of = |row: &Value, name: &str| row[name].as_f64().unwrap_or(0.0);
+        let floor = of(multiple, "arithmetic").max(of(multiple, "streaming"));
+        assert!(
+            floor > 0.0 && (of(multiple, "whole") * floor / of(row, "whole") - 1.0).abs() < 1e-9
+        );
     }
     assert_eq!(runs.len(), 2);
     for row in runs {

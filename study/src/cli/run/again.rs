@@ -109,8 +109,8 @@ fn run_changed(
         }
         let study = Study::load(&stored.results.study_path(), &sets)?;
         let planned = plan::next_jobs(&study, &[]).map(|generation| generation.points);
-        let found =
-            planned.unwrap_or_default().into_iter().find(|other| is_same_point(other, point));
+        let planned = planned.unwrap_or_default();
+        let found = planned.iter().find(|other| is_same_point(other, point));
         let found = found.filter(|other| other.infeasible.is_none()).ok_or_else(|| {
             let problem = format!("leaves the study without the point of job {}", id.short());
             let next = "change a key that the grid does not vary";

@@ -11,6 +11,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZero;
+use std::sync::Arc;
 use std::time::Duration;
 
 use crate::input::json::Json;
@@ -101,7 +102,7 @@ pub struct RunResult {
     /// How it ended.
     pub summary: Summary,
     /// Every point planned.
-    pub points: Vec<Point>,
+    pub points: Arc<Vec<Point>>,
     /// The records of their jobs.
     pub records: BTreeMap<JobId, Record>,
 }

@@ -1,6 +1,7 @@
 //! The thread of a run that stores results: what is finished, what is missing, what came back.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::attempt_log::AttemptLog;
@@ -39,7 +40,7 @@ pub(super) struct State<'a, 'w> {
     /// Deaths of earlier processes.
     deaths: Deaths,
     /// Every point planned so far.
-    points: Vec<Point>,
+    points: Arc<Vec<Point>>,
     summary: Summary,
     table_due: Instant,
     table_outdated: bool,
@@ -55,7 +56,7 @@ impl<'a, 'w> State<'a, 'w> {
             recorded: journal.records,
             records: run.known.clone(),
             deaths: Deaths::new(journal.deaths),
-            points: Vec::new(),
+            points: Arc::default(),
             summary: Summary::default(),
             table_due: Instant::now() + MIN_TABLE_INTERVAL,
             table_outdated: true,
@@ -267,7 +268,7 @@ impl<'a, 'w> State<'a, 'w> {
     pub(super) fn into_result(self) -> RunResult {
         let Self { points, records, .. } = self;
         let mut summary = Summary { signal: self.run.stop.requested(), ..self.summary };
-        for point in &points {
+        for point in points.iter() {
             summary.counts.add_cells(&journal::row_of(point, &records));
         }
         RunResult { summary, points, records }

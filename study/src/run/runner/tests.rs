@@ -252,11 +252,11 @@ fn a_resumed_study_plans_its_generations_again() {
     let folder = folder();
     // Two generations: the second is planned from the rows of the first.
     let planner = |finished: &[FinishedRow]| -> Option<Generation> {
-        let mut all = fixture::generation(6).points;
+        let mut all = fixture::points(6);
         let second = all.split_off(3);
         match finished.len() {
-            0 => Some(Generation { number: 0, points: all }),
-            3 => Some(Generation { number: 1, points: second }),
+            0 => Some(Generation { number: 0, points: Arc::new(all) }),
+            3 => Some(Generation { number: 1, points: Arc::new(second) }),
             _ => None,
         }
     };

@@ -128,7 +128,7 @@ mod tests {
 
     /// Two designs, three seeds each, with these verdicts and speeds.
     fn table(verdicts: [&str; 6], speeds: [f64; 6]) -> Table {
-        let mut points: Vec<Point> = fixture::generation(6).points;
+        let mut points: Vec<Point> = fixture::points(6);
         let mut records = BTreeMap::new();
         for (index, point) in points.iter_mut().enumerate() {
             let number = |value: usize| Value::Integer(i64::try_from(value).unwrap());

@@ -112,7 +112,7 @@ mod tests {
 
     /// The errors of a row of the paper's capsule, computed by a model.
     fn of_row(model: ModelKind, stepping: Stepping) -> RowErrors {
-        let mut point = fixture::generation(1).points.remove(0);
+        let mut point = fixture::points(1).remove(0);
         let scene: &mut Scene = std::sync::Arc::make_mut(&mut point.job.scene);
         *scene = MeshErrors::shipped().coverage.scene.clone();
         scene.design.panels = 6;

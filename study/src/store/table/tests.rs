@@ -6,7 +6,7 @@ use super::*;
 use crate::run::fixture;
 
 fn built() -> Table {
-    let mut points = fixture::generation(5).points;
+    let mut points = fixture::points(5);
     Arc::make_mut(&mut points[1].job.parameters)[1].1 = Value::Integer(3);
     let tall = ("height".to_owned(), Value::Text("tall".to_owned()));
     let parameters = &mut points[3].job.parameters;
@@ -42,7 +42,7 @@ fn every_planned_point_is_a_row_in_plan_order() {
 
 #[test]
 fn points_of_one_job_are_rows_that_name_each_other() {
-    let mut points = fixture::generation(2).points;
+    let mut points = fixture::points(2);
     let with = |number: i64| {
         let mut parameters = points[0].job.parameters.clone();
         Arc::make_mut(&mut parameters)[0].1 = Value::Integer(number);
