@@ -2,6 +2,7 @@
 //!
 //! A kernel is written once, generic over [`Wide`], and is `#[inline(always)]`; `dispatch_wide!`
 //! compiles it for the vector registers of each instruction set and selects one at run time. A kernel
+//! that fills these registers takes parts of a group (`dispatch_parts!`). A kernel
 //! that the compiler vectorises well is written over [`Lanes`], plain arrays, and uses `dispatch!`.
 //!
 //! All instruction sets give the same bits: every lane does the same additions, multiplications,
@@ -80,8 +81,8 @@ impl InstructionSet {
     }
 }
 
-/// One `f64` for each of eight elements, in the registers of an instruction set. Every operation gives
-/// the bits of eight scalar operations.
+/// One `f64` for each element of a group, or of a part of it, in the registers of an instruction set. Every operation
+/// gives the bits of as many scalar operations.
 pub trait Wide:
     Copy
     + Add<Output = Self>

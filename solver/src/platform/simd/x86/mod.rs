@@ -1,13 +1,13 @@
-//! Eight values in the registers of AVX2 and of AVX-512.
+//! Eight values in the registers of AVX2 and of AVX-512, and four in one register of AVX2.
 //!
 //! Every operation is one instruction (two on AVX2) and gives the bits of eight scalar operations.
 //! Plain arrays ([`Lanes`](super::Lanes)) leave the choice of instructions to the compiler, which turns some long
 //! kernels into scalar code; these types do not.
 //!
 //! # Safety
-//! **Invariant**: code that uses [`Avx2`] runs only where AVX2 is detected, code that uses [`Avx512`]
-//! only where AVX-512 F and DQ are detected. `dispatch_wide!` alone names the two types, and only
-//! inside functions it enters after detection. Every unsafe block below rests on this invariant.
+//! **Invariant**: code that uses [`Avx2`] and [`Avx2Half`] runs only where AVX2 is detected, code that uses
+//! [`Avx512`] only where AVX-512 F and DQ are detected. `dispatch_wide!` and `dispatch_parts!` alone name these types,
+//! and only inside functions they enter after detection. Every unsafe block below rests on this invariant.
 
 #![expect(unsafe_code, reason = "each intrinsic needs its instruction set")]
 #![allow(clippy::inline_always, reason = "a kernel must be inlined into its instruction set")]
