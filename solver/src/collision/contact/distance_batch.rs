@@ -7,7 +7,7 @@
 #![allow(clippy::inline_always, reason = "inside the loop over pairs")]
 
 use super::distance::{PARALLEL_TOLERANCE, point_triangle};
-use crate::collision::broad_phase::query::PairKind;
+use super::pair::{Pair, PairKind, vectors_of};
 use crate::geometry::field::Field;
 use crate::geometry::topology::Topology;
 use crate::platform::simd::{InstructionSet, Vectors, WIDTH, Wide, dispatch_wide, vectors_at};
@@ -100,22 +100,6 @@ fn select<L: Wide>(condition: L, yes: [L; 3], no: [L; 3]) -> [L; 3] {
     ]
 }
 
-/// The nodes of a pair, those of its first primitive first.
-#[inline(always)]
-fn nodes_of(kind: PairKind, topology: &Topology, [first, second]: [u32; 2]) -> [u32; 4] {
-    match kind {
-        PairKind::NodeElement => {
-            let [a, b, c] = topology.triangles[second as usize];
-            [first, a, b, c]
-        }
-        PairKind::EdgeEdge => {
-            let [a, b] = topology.edges[first as usize];
-            let [c, d] = topology.edges[second as usize];
-            [a, b, c, d]
-        }
-    }
-}
-
 #[inline(always)]
 fn distances_kernel<L: Wide>(
     kind: PairKind,
@@ -128,8 +112,8 @@ fn distances_kernel<L: Wide>(
         // Lanes without a pair repeat the first.
         let mut nodes = [[0; WIDTH]; 4];
         for lane in 0..WIDTH {
-            let pair = chunk[if lane < chunk.len() { lane } else { 0 }];
-            let of_pair = nodes_of(kind, topology, pair);
+            let [first, second] = chunk[if lane < chunk.len() { lane } else { 0 }];
+            let of_pair = Pair { kind, first, second }.nodes(topology);
             for corner in 0..4 {
                 nodes[corner][lane] = of_pair[corner];
             }
@@ -170,9 +154,10 @@ pub fn distances(
 ) {
     let before = distances.len();
     distances_with_area(instruction_set, kind, topology, positions, pairs, distances);
-    for (distance, pair) in distances[before..].iter_mut().zip(pairs) {
+    for (distance, [first, second]) in distances[before..].iter_mut().zip(pairs) {
         if kind == PairKind::NodeElement && distance.is_nan() {
-            let x = nodes_of(kind, topology, *pair).map(|node| positions.get(node as usize));
+            let pair = Pair { kind, first: *first, second: *second };
+            let x = vectors_of(positions, pair.nodes(topology));
             *distance = point_triangle(&x).squared.sqrt();
         }
     }

@@ -22,7 +22,8 @@ pub struct Pair {
 
 impl Pair {
     /// Its four nodes. The first [`Self::nodes_of_first`] of them belong to the first primitive.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "inside the kernels of distances")]
     pub fn nodes(self, topology: &Topology) -> [u32; 4] {
         match self.kind {
             PairKind::NodeElement => {

@@ -53,22 +53,21 @@ impl LaneSums {
     #[inline(always)]
     fn add<L: Wide>(
         &mut self,
-        first: usize,
+        lane: usize,
         six_volume: L,
         a: &ElementResponse<L>,
         b: &ElementResponse<L>,
     ) {
-        (load::<L>(&self.six_volumes, first) + six_volume).store(&mut self.six_volumes.0, first);
+        (load::<L>(&self.six_volumes, lane) + six_volume).store(&mut self.six_volumes.0, lane);
         let numerical = a.minus_twice_numerical + b.minus_twice_numerical;
-        (load::<L>(&self.minus_twice_numerical, first) + numerical)
-            .store(&mut self.minus_twice_numerical.0, first);
+        (load::<L>(&self.minus_twice_numerical, lane) + numerical)
+            .store(&mut self.minus_twice_numerical.0, lane);
         let loss = a.minus_twice_loss + b.minus_twice_loss;
-        (load::<L>(&self.minus_twice_loss, first) + loss)
-            .store(&mut self.minus_twice_loss.0, first);
-        load::<L>(&self.largest_stress, first)
+        (load::<L>(&self.minus_twice_loss, lane) + loss).store(&mut self.minus_twice_loss.0, lane);
+        load::<L>(&self.largest_stress, lane)
             .max(a.largest_stress)
             .max(b.largest_stress)
-            .store(&mut self.largest_stress.0, first);
+            .store(&mut self.largest_stress.0, lane);
     }
 }
 
@@ -110,8 +109,8 @@ fn element_kernel<L: Wide, const LOSS: bool, const PASS: u8>(
         let [a_last, b_last] = if LOSS { &last_creep[block] } else { &none };
         let [a_next, b_next] = if writes_creep { &mut next_creep[block] } else { &mut unused };
         cleared = corners.clear_sums(block, cleared, sums);
-        for first in (0..WIDTH).step_by(L::COUNT) {
-            let kites = positions.corners::<L>(block, first);
+        for lane in (0..WIDTH).step_by(L::COUNT) {
+            let kites = positions.corners::<L>(block, lane);
             let [p, d, q] = edges(kites);
             let (a_normal, b_normal) = (p.cross(d), d.cross(q));
             let normal = a_normal + b_normal;
@@ -128,24 +127,24 @@ fn element_kernel<L: Wide, const LOSS: bool, const PASS: u8>(
                     history: &mut *a_history,
                     last_creep: a_last,
                     next_creep: &mut *a_next,
-                    first,
+                    lane,
                 },
                 Element {
                     block: b_block,
                     history: &mut *b_history,
                     last_creep: b_last,
                     next_creep: &mut *b_next,
-                    first,
+                    lane,
                 },
             ];
             let [a, b] = kite_response::<L, LOSS, PASS>(&law, elements, metrics);
-            totals.add(first, six_volume, &a, &b);
+            totals.add(lane, six_volume, &a, &b);
             let (r, r2) = (a.minus_force_density, b.minus_force_density);
             let force_a = p.scale(r[0]) + d.scale(r[1]);
             let force_t = p.scale(r[1]) + d.scale(r[2] + r2[0]) + q.scale(r2[1]);
             let force_b = d.scale(r2[1]) + q.scale(r2[2]);
             let film = [-(force_a + force_t + force_b), force_a, force_t, force_b];
-            corners.scatter((block, first), &film, &[normal, a_normal, b_normal], sums);
+            corners.scatter((block, lane), &film, &[normal, a_normal, b_normal], sums);
         }
     }
     totals

@@ -21,9 +21,9 @@ impl<L: Wide> Metric<L> {
     /// Exx + ½ = a² m1      Eyy + ½ = b (b m1 + d m2) + d² m3      2 Exy = a (b m1 + (b m1 + d m2))
     /// ```
     #[inline(always)]
-    fn strain(self, block: &ElementBlock, first: usize) -> [L; 3] {
+    fn strain(self, block: &ElementBlock, lane: usize) -> [L; 3] {
         let Self([m1, m2, m3]) = self;
-        let [a, b, d] = load_all::<L, 3>(&block.inverse_shape, first);
+        let [a, b, d] = load_all::<L, 3>(&block.inverse_shape, lane);
         let (b_m1, d_m2) = (b * m1, d * m2);
         let b_m1_d_m2 = b_m1 + d_m2;
         // Exx + ½ and Eyy + ½.
@@ -33,24 +33,24 @@ impl<L: Wide> Metric<L> {
 }
 
 #[inline(always)]
-pub(super) fn load<L: Wide>(lanes: &Lanes, first: usize) -> L {
-    L::load(&lanes.0, first)
+pub(super) fn load<L: Wide>(lanes: &Lanes, lane: usize) -> L {
+    L::load(&lanes.0, lane)
 }
 
 #[inline(always)]
-fn load_all<L: Wide, const N: usize>(lanes: &[Lanes; N], first: usize) -> [L; N] {
+fn load_all<L: Wide, const N: usize>(lanes: &[Lanes; N], lane: usize) -> [L; N] {
     let mut all = [L::splat(0.0); N];
     for k in 0..N {
-        all[k] = load(&lanes[k], first);
+        all[k] = load(&lanes[k], lane);
     }
     all
 }
 
 /// Writes three components to a stored tensor, from a lane on.
 #[inline(always)]
-fn store<L: Wide>(a: [L; 3], stored: &mut [Lanes; 3], first: usize) {
+fn store<L: Wide>(a: [L; 3], stored: &mut [Lanes; 3], lane: usize) {
     for k in 0..3 {
-        a[k].store(&mut stored[k].0, first);
+        a[k].store(&mut stored[k].0, lane);
     }
 }
 
@@ -96,7 +96,7 @@ pub(super) struct Element<'a> {
     pub last_creep: &'a CreepStrain,
     pub next_creep: &'a mut CreepStrain,
     /// Their first lane.
-    pub first: usize,
+    pub lane: usize,
 }
 
 /// The strain of eight elements, and what the creep of the step adds to it.
@@ -118,21 +118,21 @@ struct Strained<L> {
 #[inline(always)]
 fn strained<L: Wide, const LOSS: bool, const PASS: u8>(
     Law { creep, step, .. }: &Law<'_>,
-    Element { block, history, last_creep, next_creep, first }: &mut Element<'_>,
+    Element { block, history, last_creep, next_creep, lane }: &mut Element<'_>,
     metric: Metric<L>,
 ) -> Strained<L> {
     let zero = L::splat(0.0);
-    let mut strain = metric.strain(block, *first);
+    let mut strain = metric.strain(block, *lane);
     let (mut creep_step, mut last_driving, mut weighted_creep) = ([zero; 3], [zero; 3], [zero; 3]);
     if LOSS {
-        let mut creep_strain = load_all::<L, 3>(&last_creep.0, *first);
+        let mut creep_strain = load_all::<L, 3>(&last_creep.0, *lane);
         if PASS == MOVED {
-            let last_stress = load_all::<L, 3>(&history.stress, *first);
+            let last_stress = load_all::<L, 3>(&history.stress, *lane);
             last_driving = subtract(last_stress, isotropic(creep_strain, creep.stiffness));
             creep_step =
                 scale(isotropic(last_driving, creep.compliance), L::splat(step.creep_share));
             creep_strain = add(creep_strain, creep_step);
-            store(creep_strain, &mut next_creep.0, *first);
+            store(creep_strain, &mut next_creep.0, *lane);
             weighted_creep = isotropic(creep_strain, creep.stiffness);
         }
         let overstrain = scale(subtract(strain, creep_strain), L::splat(creep.ratio));
@@ -158,16 +158,16 @@ struct Stressed<L> {
 #[inline(always)]
 fn stressed<L: Wide, const PASS: u8>(
     Law { material, .. }: &Law<'_>,
-    Element { history, first, .. }: &mut Element<'_>,
+    Element { history, lane, .. }: &mut Element<'_>,
     Strained { strain, circle, .. }: &Strained<L>,
 ) -> Stressed<L> {
     let zero = L::splat(0.0);
-    let last_strain = load_all::<L, 3>(&history.strain, *first);
-    let last_stress = load_all::<L, 3>(&history.stress, *first);
-    store(*strain, &mut history.strain, *first);
+    let last_strain = load_all::<L, 3>(&history.strain, *lane);
+    let last_stress = load_all::<L, 3>(&history.stress, *lane);
+    store(*strain, &mut history.strain, *lane);
     let StressResponse { mean, shear_modulus, largest } = material.response(*circle);
     let stress = [mean, shear_modulus * circle.difference, shear_modulus * circle.shear];
-    store(stress, &mut history.stress, *first);
+    store(stress, &mut history.stress, *lane);
     let (mut strain_step, mut stress_step) = ([zero; 3], [zero; 3]);
     let (mut twice_missed, mut share) = (zero, zero);
     if PASS == MOVED {
@@ -185,7 +185,7 @@ fn stressed<L: Wide, const PASS: u8>(
 #[inline(always)]
 fn response<L: Wide, const LOSS: bool, const PASS: u8>(
     Law { creep, step, .. }: &Law<'_>,
-    Element { block, history, first, .. }: &mut Element<'_>,
+    Element { block, history, lane, .. }: &mut Element<'_>,
     Strained { creep_step, last_driving, weighted_creep, .. }: Strained<L>,
     stressed: Stressed<L>,
 ) -> ElementResponse<L> {
@@ -195,18 +195,18 @@ fn response<L: Wide, const LOSS: bool, const PASS: u8>(
     let last_numerical = if PASS == CONSERVATIVE {
         [zero; 3]
     } else {
-        load_all::<L, 3>(&history.numerical_stress, *first)
+        load_all::<L, 3>(&history.numerical_stress, *lane)
     };
-    let minus_volume = load::<L>(&block.minus_volume, *first);
+    let minus_volume = load::<L>(&block.minus_volume, *lane);
     let (mut numerical, mut minus_twice_numerical) = (last_numerical, zero);
     let mut minus_twice_loss = zero;
     if PASS == MOVED {
         // Rounding alone takes κ out of its bounds.
         let half = L::splat(0.5);
         let share = -((-share.max(-half)).max(-half));
-        let damping = load::<L>(&block.damping_time, *first) * step.inverse;
+        let damping = load::<L>(&block.damping_time, *lane) * step.inverse;
         numerical = scale(stress_step, share + damping);
-        store(numerical, &mut history.numerical_stress, *first);
+        store(numerical, &mut history.numerical_stress, *lane);
         let displacement = if LOSS {
             add(strain_step, scale(creep_step, L::splat(creep.ratio)))
         } else {
@@ -224,15 +224,15 @@ fn response<L: Wide, const LOSS: bool, const PASS: u8>(
     let [mean, half_difference, xy] = scale(add(stress, numerical), minus_volume);
     let (xx, yy) = (mean + half_difference, mean - half_difference);
     // Gᵀ: r1 = a² Sxx + b (b Syy + 2 a Sxy)    r2 = d (b Syy + a Sxy)    r3 = d² Syy.
-    let [a, b, d] = load_all::<L, 3>(&block.inverse_shape, *first);
+    let [a, b, d] = load_all::<L, 3>(&block.inverse_shape, *lane);
     let a_xy = a * xy;
     let b_yy_a_xy = b * yy + a_xy;
     let minus_force_density = [(a * a) * xx + b * (b_yy_a_xy + a_xy), d * b_yy_a_xy, (d * d) * yy];
     ElementResponse { minus_force_density, minus_twice_numerical, minus_twice_loss, largest_stress }
 }
 
-/// Both elements of kites at their metrics. In turn: a square root and a quotient have a long latency, and work on the
-/// other element follows them.
+/// Both elements of kites at their metrics. Each part is computed for both before the next part: a square root and a
+/// quotient have a long latency, which work on the other element fills.
 #[inline(always)]
 pub(super) fn kite_response<L: Wide, const LOSS: bool, const PASS: u8>(
     law: &Law<'_>,
