@@ -40,8 +40,8 @@ const END_TIME: &str = "solver.end_time=\"1.6 s\"";
 const RISING: f64 = 0.03;
 /// Number of times that the steps of a state are repeated.
 const REPEATS: u32 = 3;
-/// Steps that are timed: whole blocks of 50 steps of the tunnelling monitor, fewer on a large mesh.
-const STEPS: [u64; 2] = [500, 200];
+/// Steps that are timed: whole blocks of 128 steps of the tunnelling monitor, fewer on a large mesh.
+const STEPS: [u64; 2] = [512, 256];
 /// Elements above which a mesh is large. Chosen.
 const LARGE: usize = 20_000;
 /// Time that these steps cannot take, s.
