@@ -32,6 +32,7 @@
 //! Equation numbers refer to "Research on the Folding Patterns and Deployment Dynamics of Inflatable
 //! Capsule Structures", unless a comment names another source.
 
+pub mod bending;
 pub mod collision;
 pub mod factorisation;
 pub mod geometry;

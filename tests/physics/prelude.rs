@@ -35,4 +35,4 @@ pub use billow_solver::scene::{
     Stepping, Support, SupportLocation,
 };
 pub use billow_solver::system::{FilmState, FilmSystem, PressureLoad, Workspace};
-pub use nalgebra::{Matrix3, Vector3};
+pub use nalgebra::{DMatrix, Matrix3, Vector3};

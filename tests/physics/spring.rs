@@ -10,7 +10,7 @@
 use std::sync::Arc;
 
 use billow_solver::geometry::shapes::{grid, joined, moved, nodes_where};
-use billow_solver::mechanics::energy_term::{Blocks, EnergyTerm};
+use billow_solver::mechanics::energy_term::{EnergyTerm, Prepared};
 
 use crate::film_rig::{free, largest_residual, ledgers, moving, unloaded};
 use crate::prelude::*;
@@ -26,6 +26,15 @@ pub struct Spring {
 }
 
 impl Spring {
+    /// ∂²Π/∂x² of the first node, N/m.
+    fn block(&self, positions: &Field) -> Matrix3<f64> {
+        let between = self.between(positions);
+        let length = between.norm();
+        let along = between * between.transpose() / (length * length);
+        let across = (Matrix3::identity() - along) * (1.0 - self.rest_length / length);
+        (along + across) * self.stiffness
+    }
+
     /// Vector from the first node to the second (m).
     fn between(&self, positions: &Field) -> Vector3<f64> {
         let [a, b] = self.nodes.map(|node| positions.get(node as usize));
@@ -49,17 +58,23 @@ impl EnergyTerm for Spring {
         }
     }
 
-    fn stiffness(&self, positions: &Field, add: Blocks<'_>) {
-        let between = self.between(positions);
-        let length = between.norm();
-        let along = between * between.transpose() / (length * length);
-        let across = (Matrix3::identity() - along) * (1.0 - self.rest_length / length);
-        let block = (along + across) * self.stiffness;
-        let [a, b] = self.nodes;
-        for (nodes, block) in [([a, a], block), ([b, b], block), ([a, b], -block), ([b, a], -block)]
-        {
-            add(nodes, &block);
+    fn patches(&self) -> Vec<Vec<u32>> {
+        vec![self.nodes.to_vec()]
+    }
+
+    fn stiffness(&self, positions: &Field, patches: &mut [DMatrix<f64>]) {
+        let block = self.block(positions);
+        for (corners, sign) in [([0, 0], 1.0), ([1, 1], 1.0), ([0, 1], -1.0), ([1, 0], -1.0)] {
+            let [i, j] = corners.map(|corner| 3 * corner);
+            patches[0].fixed_view_mut::<3, 3>(i, j).copy_from(&(block * sign));
         }
+    }
+
+    fn add_product(&self, at: &Prepared<'_>, displacements: &Field, products: &mut Field) {
+        let [a, b] = self.nodes.map(|node| node as usize);
+        let pull = self.block(at.positions) * (displacements.get(b) - displacements.get(a));
+        products.set(a, products.get(a) - pull);
+        products.set(b, products.get(b) + pull);
     }
 
     fn frequency_squared(&self, mass: &[f64]) -> f64 {

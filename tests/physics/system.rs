@@ -156,6 +156,15 @@ fn the_stiffness_is_minus_the_slope_of_the_forces() {
             }
         }
         system.pair_stiffness(at_now, &workspace, &mut add);
+        let patches = system.patches();
+        let mut stiffness: Vec<_> =
+            patches.iter().map(|nodes| DMatrix::zeros(3 * nodes.len(), 3 * nodes.len())).collect();
+        system.patch_stiffness(&positions, &mut stiffness);
+        let mut of_terms = Field::zeros(directions.len());
+        system.add_term_products((&positions, &stiffness), &Field::of(&directions), &mut of_terms);
+        for (sum, of_terms) in product.iter_mut().zip(of_terms.iter()) {
+            *sum += of_terms;
+        }
         if let Some(gas) = system.gas_stiffness(&evaluation, &workspace) {
             let rate: f64 = gas.gradient.iter().zip(&directions).map(|(g, u)| g.dot(u)).sum();
             for (sum, gradient) in product.iter_mut().zip(gas.gradient.iter()) {

@@ -22,6 +22,7 @@ const ROOMS: [(&str, &[&str]); 3] = [
             "scene",
             "mechanics",
             "factorisation",
+            "bending",
             "collision",
             "output",
             "system",

@@ -8,11 +8,12 @@
 //! which is added to the parent front (I. Duff, J. Reid, "The multifrontal solution of indefinite sparse
 //! symmetric linear systems", 1983). All additions have a fixed order.
 
+use nalgebra::{DMatrix, Matrix3};
+
 use super::dense::{Front, clear, factor_panel, solve_backward, solve_forward, update_complement};
 use super::plan::{FaceEntries, FrontFace, Plan, plan};
 use super::unknowns::Unknowns;
 use crate::geometry::field::Field;
-use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::tangent::Stiffness;
 use crate::platform::simd::{InstructionSet, Lanes, WIDTH};
 
@@ -65,10 +66,10 @@ impl Assembly<'_> {
         }
     }
 
-    /// Adds the stiffness of a face, and its diagonal to `diagonal`.
+    /// Adds the stiffness of a face, column by column, and its diagonal to `diagonal`.
     fn add_face(
         &mut self,
-        stiffness: &Stiffness,
+        (stiffness, size): (&[f64], usize),
         face: &FrontFace,
         unknowns: &[u32],
         diagonal: &mut [f64],
@@ -77,17 +78,19 @@ impl Assembly<'_> {
             FaceEntries::Components(entries) => {
                 for (index, (column, from)) in entries.iter().enumerate() {
                     let (column, from) = (*column as usize, *from as usize);
-                    diagonal[unknowns[column] as usize] += stiffness[(from, from)];
+                    let stiffness = &stiffness[from * size..(from + 1) * size];
+                    diagonal[unknowns[column] as usize] += stiffness[from];
                     for (row, to) in &entries[index..] {
-                        *self.entry(*row as usize, column) += stiffness[(*to as usize, from)];
+                        *self.entry(*row as usize, column) += stiffness[*to as usize];
                     }
                 }
             }
             FaceEntries::Oblique(entries) => {
                 for (column, corner, along) in entries {
-                    let forces = stiffness.fixed_view::<9, 3>(0, 3 * corner) * along;
+                    let columns = &stiffness[3 * corner * size..];
                     for (row, other, across) in entries {
-                        let force = forces.fixed_view::<3, 1>(3 * other, 0).dot(across);
+                        let block = Matrix3::from_fn(|i, k| columns[k * size + 3 * other + i]);
+                        let force = (block * along).dot(across);
                         if row == column {
                             // Two entries with the same unknown both count.
                             diagonal[unknowns[*column as usize] as usize] += force;
@@ -160,9 +163,17 @@ fn add_block(
 }
 
 impl Elimination {
-    /// The elimination of these unknowns of a film. Its dissection uses the positions (m).
-    pub fn new(model: &FilmModel, unknowns: &Unknowns, positions: &Field) -> Self {
-        let plans = plan(model, unknowns, positions);
+    /// The elimination of these unknowns, coupled by the stiffness of faces and of patches of any number of nodes. Its
+    /// dissection uses the positions (m).
+    pub fn new(
+        faces: &[[u32; 3]],
+        patches: &[Vec<u32>],
+        unknowns: &Unknowns,
+        positions: &Field,
+    ) -> Self {
+        let faces = faces.iter().map(|nodes| &nodes[..]);
+        let coupled: Vec<&[u32]> = faces.chain(patches.iter().map(|nodes| &nodes[..])).collect();
+        let plans = plan(&coupled, unknowns, positions);
         let mut starts = vec![0];
         let mut length = 0;
         for plan in &plans {
@@ -172,12 +183,12 @@ impl Elimination {
         Self { plans, starts, unknowns: unknowns.len() }
     }
 
-    /// Factorises the stiffness of each face, film first, plus a shift of the diagonal (both N/m). `false` if
-    /// the matrix is not positive definite.
+    /// Factorises the stiffness of each face and of each patch, plus a shift of the diagonal (N/m). `false` if the
+    /// matrix is not positive definite.
     pub fn factor(
         &self,
         instruction_set: InstructionSet,
-        stiffness: &[Stiffness],
+        (stiffness, patches): (&[Stiffness], &[DMatrix<f64>]),
         shift: &[f64],
         factor: &mut Factor,
     ) -> bool {
@@ -207,7 +218,11 @@ impl Elimination {
                 assembly.panel[group].0[unused % WIDTH] = 1.0;
             }
             for face in &plan.faces {
-                assembly.add_face(&stiffness[face.face], face, &plan.unknowns, diagonal);
+                let matrix = match face.face.checked_sub(stiffness.len()) {
+                    None => (stiffness[face.face].as_slice(), 9),
+                    Some(patch) => (patches[patch].as_slice(), patches[patch].nrows()),
+                };
+                assembly.add_face(matrix, face, &plan.unknowns, diagonal);
             }
             for child in &plan.children {
                 let received = core::mem::take(&mut complements[*child]);
@@ -297,10 +312,11 @@ fn scatter(plan: &Plan, values: &[Lanes], count: usize, all: &mut [f64]) {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{DMatrix, DVector, Vector3};
+    use nalgebra::{DVector, Vector3};
 
     use super::*;
     use crate::geometry::shapes::{grid, nodes_where, pseudo_random};
+    use crate::mechanics::film_model::FilmModel;
     use crate::mechanics::supports::Supports;
     use crate::scene::Film;
     use crate::scene::film_support::{FilmSupport, Hold, PlaneBody};
@@ -345,19 +361,19 @@ mod tests {
                 }
             }
         }
-        let elimination = Elimination::new(&model, &unknowns, &positions);
+        let elimination = Elimination::new(&model.triangles, &[], &unknowns, &positions);
         let forces: Vec<f64> = (0..unknowns.len()).map(|k| libm::sin(k as f64)).collect();
         let mut factor = Factor::default();
         // The second factorisation uses the memory of the first.
         for _ in 0..2 {
             let set = InstructionSet::detect();
-            assert!(elimination.factor(set, &stiffness, &shift, &mut factor));
+            assert!(elimination.factor(set, (&stiffness, &[]), &shift, &mut factor));
             let found = DVector::from_vec(elimination.solve(set, &mut factor, &forces));
             let error = (&full * found - DVector::from_vec(forces.clone())).amax();
             assert!(error < 1e-8, "{error}");
         }
         let indefinite: Vec<f64> = shift.iter().map(|_| -1e4).collect();
         let set = InstructionSet::detect();
-        assert!(!elimination.factor(set, &stiffness, &indefinite, &mut factor));
+        assert!(!elimination.factor(set, (&stiffness, &[]), &indefinite, &mut factor));
     }
 }

@@ -10,7 +10,6 @@ use super::dense::Front;
 use super::order::{Separator, dissect};
 use super::unknowns::Unknowns;
 use crate::geometry::field::Field;
-use crate::mechanics::film_model::FilmModel;
 
 /// One unknown of a face: its index in the front, the corner it moves, and the direction.
 type FaceUnknown = (u32, usize, Vector3<f64>);
@@ -41,7 +40,7 @@ impl FaceEntries {
     fn new(mut unknowns: Vec<FaceUnknown>) -> Self {
         let component = |(local, corner, direction): &FaceUnknown| {
             let axis = (0..3).find(|axis| *direction == Vector3::ith(*axis, 1.0))?;
-            Some((*local, u32::try_from(3 * corner + axis).expect("under 9")))
+            Some((*local, u32::try_from(3 * corner + axis).expect("under 2^32")))
         };
         unknowns.sort_by_key(|(local, ..)| *local);
         // A rigid plane may move several corners.
@@ -110,8 +109,8 @@ impl Schedule {
 }
 
 /// Nodes with unknowns that share a face with each node with unknowns, ascending.
-fn neighbours(model: &FilmModel, faces: &[[u32; 3]], free: impl Fn(u32) -> bool) -> Vec<Vec<u32>> {
-    let mut neighbours = vec![Vec::new(); model.nodes()];
+fn neighbours(nodes: usize, faces: &[&[u32]], free: impl Fn(u32) -> bool) -> Vec<Vec<u32>> {
+    let mut neighbours = vec![Vec::new(); nodes];
     for face in faces {
         for node in face.iter().filter(|node| free(**node)) {
             let others = face.iter().filter(|other| *other != node && free(**other));
@@ -126,7 +125,7 @@ fn neighbours(model: &FilmModel, faces: &[[u32; 3]], free: impl Fn(u32) -> bool)
 }
 
 /// The unknowns that move a face; those of its first corner come first.
-fn unknowns_of_face(face: &[u32; 3], unknowns: &Unknowns) -> Vec<FaceUnknown> {
+fn unknowns_of_face(face: &[u32], unknowns: &Unknowns) -> Vec<FaceUnknown> {
     let corner = |(corner, node): (usize, &u32)| {
         let of_node = unknowns.of_node[*node as usize].iter();
         of_node.map(move |(unknown, direction)| (*unknown, corner, *direction))
@@ -136,7 +135,7 @@ fn unknowns_of_face(face: &[u32; 3], unknowns: &Unknowns) -> Vec<FaceUnknown> {
 
 /// Assigns each face to the first separator that eliminates one of its unknowns.
 fn faces_of_separators(
-    faces: &[[u32; 3]],
+    faces: &[&[u32]],
     unknowns: &Unknowns,
     schedule: &Schedule,
 ) -> Vec<Vec<FaceUnknowns>> {
@@ -196,15 +195,16 @@ fn locate(plans: &mut [Plan], faces: Vec<Vec<FaceUnknowns>>, schedule: &Schedule
     }
 }
 
-/// The fronts of a film's unknowns, children before parents. Their dissection uses the positions (m).
-pub fn plan(model: &FilmModel, unknowns: &Unknowns, positions: &Field) -> Vec<Plan> {
-    let faces: Vec<[u32; 3]> = model.triangles.iter().chain(&model.closure).copied().collect();
+/// The fronts of these unknowns, coupled by faces (nodes of each); children before parents. Their dissection uses the
+/// positions (m).
+pub fn plan(faces: &[&[u32]], unknowns: &Unknowns, positions: &Field) -> Vec<Plan> {
+    let count = unknowns.of_node.len();
     let free = |node: u32| !unknowns.node_range[node as usize].is_empty();
-    let neighbours = neighbours(model, &faces, free);
-    let nodes = (0_u32..).take(model.nodes()).filter(|node| free(*node)).collect();
+    let neighbours = neighbours(count, faces, free);
+    let nodes = (0_u32..).take(count).filter(|node| free(*node)).collect();
     let tree = dissect(nodes, &neighbours, positions);
     let schedule = Schedule::new(&tree, unknowns);
-    let faces = faces_of_separators(&faces, unknowns, &schedule);
+    let faces = faces_of_separators(faces, unknowns, &schedule);
     let mut plans = fronts(tree, &faces, &schedule);
     locate(&mut plans, faces, &schedule);
     plans

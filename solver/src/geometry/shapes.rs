@@ -199,6 +199,7 @@ pub fn joined(pieces: &[Shell]) -> Shell {
         whole.positions.extend(&piece.positions);
         whole.triangles.extend(piece.triangles.iter().map(|t| t.map(|node| node + first)));
         whole.reference.extend(&piece.reference);
+        whole.folds.extend(piece.folds.iter().map(|edge| edge.map(|node| node + first)));
     }
     whole
 }
@@ -230,7 +231,7 @@ pub fn pseudo_random(count: usize, seed: u64) -> Vec<Vector3<f64>> {
 fn in_plane(positions: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>) -> Shell {
     let flat = |node: u32| -> Vector2<f64> { positions[node as usize].xy() };
     let reference = triangles.iter().map(|t: &[u32; 3]| t.map(flat)).collect();
-    Shell { positions, triangles, reference, closure: Vec::new(), walls: Vec::new() }
+    Shell { positions, triangles, reference, ..Shell::default() }
 }
 
 #[cfg(test)]

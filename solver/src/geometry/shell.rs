@@ -31,6 +31,8 @@ pub struct Shell {
     pub closure: Vec<[u32; 3]>,
     /// Fans of closing faces on walls.
     pub walls: Vec<Wall>,
+    /// Edges on fold lines, the lower node first; ascending.
+    pub folds: Vec<[u32; 2]>,
 }
 
 /// A fan of closing faces on a wall: supports hold its whole boundary loop along the normals of its faces. It
@@ -78,7 +80,7 @@ impl Shell {
     /// Film that is free of stress in its initial shape: each element is its own flat reference.
     pub fn relaxed(positions: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>) -> Self {
         let reference = triangles.iter().map(|t| flat(t.map(|n| positions[n as usize]))).collect();
-        Self { positions, triangles, reference, closure: Vec::new(), walls: Vec::new() }
+        Self { positions, triangles, reference, ..Self::default() }
     }
 
     /// The film of a capsule.
@@ -87,8 +89,8 @@ impl Shell {
             positions: mesh.positions.clone(),
             triangles: mesh.triangles.clone(),
             reference: mesh.reference.clone(),
-            closure: Vec::new(),
-            walls: Vec::new(),
+            folds: mesh.folds(),
+            ..Self::default()
         }
     }
 

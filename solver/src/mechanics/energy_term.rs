@@ -1,7 +1,7 @@
 //! A further energy of the film, beside those of membrane, gas, gravity and contact.
 //!
 //! ```text
-//! f = −∂Π/∂x        K = ∂²Π/∂x²        ω² ≤ largest eigenvalue of M⁻¹ K
+//! f = −∂Π/∂x        K = ∂²Π/∂x²        ω² ≥ largest eigenvalue of M⁻¹ K
 //! ```
 //!
 //! Every integrator adds the terms of its system to forces, energy and stable step. A system without terms
@@ -9,13 +9,22 @@
 
 use core::fmt;
 
-use nalgebra::Matrix3;
+use nalgebra::{DMatrix, Matrix3};
 
 use crate::geometry::field::Field;
 
 /// Receives the 3 × 3 blocks of a stiffness: two nodes, and ∂²Π/∂x₁∂x₂, N/m. Blocks of the same nodes add up;
 /// both blocks of two different nodes are given.
 pub type Blocks<'a> = &'a mut dyn FnMut([u32; 2], &Matrix3<f64>);
+
+/// The stiffness of a term at some positions.
+#[derive(Debug, Clone, Copy)]
+pub struct Prepared<'a> {
+    /// The positions, m.
+    pub positions: &'a Field,
+    /// Its patches there, N/m.
+    pub patches: &'a [DMatrix<f64>],
+}
 
 /// An energy that is a function of the positions of the nodes.
 pub trait EnergyTerm: fmt::Debug + Send + Sync {
@@ -25,8 +34,21 @@ pub trait EnergyTerm: fmt::Debug + Send + Sync {
     /// Adds −∂Π/∂x of each node (N) to `forces`.
     fn add_forces(&self, positions: &Field, forces: &mut Field);
 
-    /// Gives the blocks of K at these positions (m).
-    fn stiffness(&self, positions: &Field, add: Blocks<'_>);
+    /// Sets of nodes, patches: constant.
+    fn patches(&self) -> Vec<Vec<u32>>;
+
+    /// Sets a matrix for each patch at these positions (m), N/m; row 3 c + k for the component k of its corner c. Their
+    /// sum is K, or near it and easier to factorise.
+    fn stiffness(&self, positions: &Field, patches: &mut [DMatrix<f64>]);
+
+    /// Adds K u, N, of displacements u (m) to `products`.
+    fn add_product(&self, stiffness: &Prepared<'_>, displacements: &Field, products: &mut Field);
+
+    /// Whether its forces may act every few steps of central differences instead of at each: they drive only motions that
+    /// are slow.
+    fn is_slow(&self) -> bool {
+        false
+    }
 
     /// Upper bound of what the term adds to the square of any frequency of film with these masses (kg),
     /// rad²/s².

@@ -17,6 +17,8 @@ pub struct Fault {
 pub enum Term {
     /// Elastic force of the film.
     Elastic,
+    /// Bending force of the film, and that of any further energy.
+    Bending,
     /// Numerical stress of the film.
     NumericalStress,
     /// Numerical dissipation in the energy ledger.
@@ -67,8 +69,9 @@ pub enum Term {
 
 impl Term {
     /// Every term.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 25] = [
         Self::Elastic,
+        Self::Bending,
         Self::NumericalStress,
         Self::NumericalWork,
         Self::Creep,

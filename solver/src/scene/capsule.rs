@@ -49,6 +49,9 @@ pub struct Film {
     pub thickness: f64,
     /// Compression fraction c: 0 for the tension field, 1 for the full membrane stiffness.
     pub compression: f64,
+    /// Whether the film has bending stiffness D = E t³/(12(1−ν²)); fold lines are free to turn. Absent where not.
+    #[serde(default, skip_serializing_if = "core::ops::Not::not")]
+    pub bending: bool,
     /// Numerical damping ratio ζ: of the highest mode of an element while the film carries tension. Not
     /// a property of the film; it stands here because the constants of the elements hold it.
     #[serde(rename = "viscosity")]
@@ -66,6 +69,12 @@ impl Film {
     #[must_use]
     pub fn elastic(self) -> Self {
         Self { loss_factor: 0.0, numerical_damping: 0.0, ..self }
+    }
+
+    /// Bending stiffness D = E t³/(12(1−ν²)), N m.
+    pub fn bending_stiffness(&self) -> f64 {
+        let (t, nu) = (self.thickness, self.poisson_ratio);
+        self.youngs_modulus * t * t * t / (12.0 * (1.0 - nu * nu))
     }
 
     /// Mass per area ρ t, kg/m².

@@ -48,6 +48,7 @@ impl Film {
         density: 1400.0,
         thickness: 25.4e-6,
         compression: 0.0,
+        bending: false,
         numerical_damping: NUMERICAL_DAMPING,
         temperature: TEMPERATURE,
         loss_factor: LOSS_FACTOR,

@@ -12,6 +12,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::bending::Bending;
 use crate::geometry::field::Field;
 use crate::geometry::shell::ShellError;
 use crate::mechanics::film_model::{FilmError, FilmModel};
@@ -99,17 +100,22 @@ pub fn solve(
     let model = FilmModel::supported(&scene.film.elastic(), &scene.shell, |node| {
         supports.hold_fully(node)
     })?;
+    let set = scene.solver.instruction_set;
+    let held = |node| supports.hold_fully(node);
+    let energy_terms = Bending::terms(&scene.film, &model, &scene.shell, set, held);
     let film = FilmSystem {
         supports,
+        energy_terms,
         gravity: scene.gravity,
-        instruction_set: scene.solver.instruction_set,
+        instruction_set: set,
         ..FilmSystem::free(model, PressureLoad::Overpressure(overpressure))
     };
     let (positions, from) =
         known.map_or((&start, None), |(state, pressure)| (&state.positions, Some(pressure)));
     let equilibrium = settle(&film, positions, from, &Tolerances::default(), continues)?;
-    let FilmSystem { model, supports, .. } = film;
-    let strain = strain_energy(&model, &equilibrium.positions);
+    let FilmSystem { model, supports, energy_terms, .. } = film;
+    let terms = energy_terms.iter().map(|term| term.energy(&equilibrium.positions));
+    let strain = strain_energy(&model, &equilibrium.positions) + terms.sum::<f64>();
     let volume = scene.shell.volume(|node| equilibrium.positions.get(node as usize));
     let gravity_work: f64 = model
         .mass

@@ -155,7 +155,7 @@ impl<'a> NewtonSearch<'a> {
             trial: positions.clone(),
             positions,
             element_history: ElementHistory::zero(model),
-            nodes: NodeForces::new(model),
+            nodes: film.no_forces(),
             forces: Field::zeros(model.nodes()),
             along: Vec::new(),
             iterations: 0,
@@ -179,6 +179,7 @@ impl<'a> NewtonSearch<'a> {
             &mut self.nodes,
         );
         let _ = add_closure(model, &self.trial, &mut self.nodes);
+        self.film.term_forces(&self.trial, &mut self.nodes);
         for node in 0..model.nodes() {
             self.forces.set(node, self.film.node_force(&self.nodes, self.overpressure, node));
         }

@@ -59,6 +59,7 @@ impl FilmSystem {
         workspace.prepare_search(self, positions);
         let mut sums = workspace.membrane(self, state, positions, None);
         workspace.add_other_forces(self, positions, &mut sums);
+        self.term_forces(positions, &mut workspace.forces);
         workspace.contact_at(self, state, positions, time);
         let volume = sums.six_volumes / 6.0;
         let (gas_pressure, pressure) = self.pressure_energy(state, volume);

@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 
 use super::FilmState;
 use crate::collision::contact::ContactModel;
+use crate::geometry::field::Field;
 use crate::mechanics::energy_term::EnergyTerm;
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::membrane::NodeForces;
@@ -104,6 +105,35 @@ impl FilmSystem {
     /// Overpressure p − `p_ambient` of a state, Pa.
     pub fn overpressure(&self, state: &FilmState) -> f64 {
         self.overpressure_at(state.pressure)
+    }
+
+    /// Zero forces on the nodes.
+    pub fn no_forces(&self) -> NodeForces {
+        let mut forces = NodeForces::new(&self.model);
+        if !self.energy_terms.is_empty() {
+            forces.terms = Field::zeros(self.model.nodes());
+        }
+        forces
+    }
+
+    /// Sets the forces (N) of the further energies at these positions (m).
+    pub fn term_forces(&self, positions: &Field, forces: &mut NodeForces) {
+        if self.energy_terms.is_empty() {
+            return;
+        }
+        let Field { x, y, z } = &mut forces.terms;
+        for column in [x, y, z] {
+            column.fill(0.0);
+        }
+        for term in &self.energy_terms {
+            term.add_forces(positions, &mut forces.terms);
+        }
+        if self.fault.is_some() {
+            let factor = self.fault_factor(Term::Bending);
+            for node in 0..forces.terms.len() {
+                forces.terms.set(node, forces.terms.get(node) * factor);
+            }
+        }
     }
 
     /// Sum of all forces on a node under an overpressure (Pa), N.

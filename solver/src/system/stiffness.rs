@@ -1,16 +1,20 @@
 //! The stiffness ∂²Π/∂x² at positions that were just evaluated, block by block.
 //!
 //! ```text
-//! K = membrane + pressure on faces + contact + plates + terms       given as 3 × 3 blocks
+//! K = membrane + pressure on faces                                   given face by face
+//!   + contact + plates                                               given as 3 × 3 blocks
+//!   + further energies                                               given patch by patch
 //!   + (γ p/V) ∂V/∂x (∂V/∂x)ᵀ                                         gas: of rank one, given apart
 //! ```
 //!
 //! The pressure on a face is given with its symmetric part; the rest cancels over a closed surface
 //! ([`crate::mechanics::forces::tangent`]). A block of a vertex without film belongs to its rim.
 
+use nalgebra::DMatrix;
+
 use super::{Evaluation, FilmSystem, PressureLoad, Workspace};
 use crate::geometry::field::Field;
-use crate::mechanics::energy_term::Blocks;
+use crate::mechanics::energy_term::{Blocks, Prepared};
 use crate::mechanics::forces::membrane::CreepStrain;
 use crate::mechanics::forces::tangent::{self, Stiffness};
 use crate::scene::HeatTransfer;
@@ -44,7 +48,7 @@ impl FilmSystem {
         )
     }
 
-    /// Gives the blocks of contact, plates and further terms at these positions (m) and this time (s), which the
+    /// Gives the blocks of contact and plates at these positions (m) and this time (s), which the
     /// workspace is of.
     pub fn pair_stiffness(
         &self,
@@ -55,8 +59,35 @@ impl FilmSystem {
         if let (Some(model), Some(contact)) = (&self.contact, &workspace.contact) {
             model.stiffness(&self.model, &contact.trial, positions, time, add);
         }
+    }
+
+    /// The patches of the further energies, term by term.
+    pub fn patches(&self) -> Vec<Vec<u32>> {
+        self.energy_terms.iter().flat_map(|term| term.patches()).collect()
+    }
+
+    /// The matrix of each patch at these positions (m), N/m.
+    pub fn patch_stiffness(&self, positions: &Field, patches: &mut [DMatrix<f64>]) {
+        let mut rest = patches;
         for term in &self.energy_terms {
-            term.stiffness(positions, add);
+            let (of_term, others) = rest.split_at_mut(term.patches().len());
+            term.stiffness(positions, of_term);
+            rest = others;
+        }
+    }
+
+    /// Adds K u of the further energies, N, of displacements u (m) to `products`; at positions (m) with these patches.
+    pub fn add_term_products(
+        &self,
+        (positions, patches): (&Field, &[DMatrix<f64>]),
+        displacements: &Field,
+        products: &mut Field,
+    ) {
+        let mut rest = patches;
+        for term in &self.energy_terms {
+            let (patches, others) = rest.split_at(term.patches().len());
+            term.add_product(&Prepared { positions, patches }, displacements, products);
+            rest = others;
         }
     }
 

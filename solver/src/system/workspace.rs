@@ -62,12 +62,8 @@ impl Workspace {
 
     /// A workspace whose search continues from this progress.
     pub fn resumed(system: &FilmSystem, state: &FilmState, progress: SearchProgress) -> Self {
-        let mut forces = NodeForces::new(&system.model);
-        if !system.energy_terms.is_empty() {
-            forces.terms = Field::zeros(system.model.nodes());
-        }
         Self {
-            forces,
+            forces: system.no_forces(),
             histories: ElementHistory::zero(&system.model),
             creep: state.creep.clone(),
             contact: system
@@ -88,12 +84,13 @@ impl Workspace {
     ) -> MembraneSums {
         let mut sums = self.membrane(system, state, &state.positions, step);
         self.add_other_forces(system, &state.positions, &mut sums);
+        system.term_forces(&state.positions, &mut self.forces);
         self.contact_at(system, state, &state.positions, state.time);
         sums
     }
 
-    /// [`Self::forces_at`] after a step of `length` (s) that ends at the time `end` (s), with a stopwatch;
-    /// makes creep strain and contacts those of the state.
+    /// [`Self::forces_at`] after a step of `length` (s) that ends at the time `end` (s), with a stopwatch, but for the
+    /// further energies ([`FilmSystem::term_forces`]); makes creep strain and contacts those of the state.
     pub(crate) fn step_forces(
         &mut self,
         system: &FilmSystem,
@@ -144,7 +141,7 @@ impl Workspace {
         }
     }
 
-    /// Adds the closing faces and the further energies, and injects a fault.
+    /// Adds the closing faces, and injects a fault.
     pub(super) fn add_other_forces(
         &mut self,
         system: &FilmSystem,
@@ -152,15 +149,6 @@ impl Workspace {
         sums: &mut MembraneSums,
     ) {
         sums.six_volumes += add_closure(&system.model, positions, &mut self.forces);
-        if !system.energy_terms.is_empty() {
-            let Field { x, y, z } = &mut self.forces.terms;
-            for column in [x, y, z] {
-                column.fill(0.0);
-            }
-            for term in &system.energy_terms {
-                term.add_forces(positions, &mut self.forces.terms);
-            }
-        }
         if system.fault.is_some() {
             self.inject_fault(system, positions, sums);
         }

@@ -220,6 +220,7 @@ impl Settings {
             density: self.needed("film.density", source)?,
             thickness: self.needed("film.thickness", source)?,
             compression: self.needed("film.compression", source)?,
+            bending: self.flag("film.bending").unwrap_or(false),
             numerical_damping: self.needed("film.numerical_damping", source)?,
             temperature: self.needed("film.temperature", source)?,
             loss_factor: self.needed("film.loss_factor", source)?,

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use billow_solver::integrators::{self, Refusal};
-use billow_solver::scene::ModelKind;
+use billow_solver::scene::{Film, ModelKind};
 
 use crate::accuracy::{MeshErrors, Method, choice};
 use crate::input::keys::numerical::{MESH_PARAMETER, SEED};
@@ -64,13 +64,23 @@ fn of_points(study: &Study) -> Vec<String> {
             lines.push(format!("{gives}, {not}"));
         }
     }
-    let stiff = |point: &Point| {
-        point.job.scene.solver.model == ModelKind::Film && point.job.scene.film.compression > 0.0
+    let film = |of: fn(&Film) -> bool| {
+        let is = |point: &Point| {
+            point.job.scene.solver.model == ModelKind::Film && of(&point.job.scene.film)
+        };
+        study.points().iter().any(is)
     };
-    if study.points().iter().any(stiff) {
+    if film(|film| film.compression > 0.0 && !film.bending) {
         lines.push(
             "note: film.compression above 0 replaces bending stiffness and its effect depends on the mesh; compare \
-             verdicts at design.subdivisions 5, 8 and 12 and several seeds"
+             verdicts at design.subdivisions 5, 8 and 12 and several seeds, or set film.bending"
+                .to_owned(),
+        );
+    }
+    if film(|film| film.compression < 1.0 && film.bending) {
+        lines.push(
+            "note: film.bending with film.compression below 1: the tension field already replaces the wrinkles that \
+             bending would form; set film.compression to 1"
                 .to_owned(),
         );
     }

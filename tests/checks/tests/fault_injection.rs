@@ -20,8 +20,9 @@ const STRIP: Detector = ("strip_damping", "log decrement");
 const PANEL: Detector = ("shear_panel", "P12");
 
 /// For each term: the detector of an error of 1 %, and that of the wrong sign.
-const DETECTORS: [(Term, Detector, Detector); 24] = [
+const DETECTORS: [(Term, Detector, Detector); 25] = [
     (Term::Elastic, PANEL, PANEL),
+    (Term::Bending, ("plate_frequency", "energy residual"), ("plate_frequency", "run")),
     (Term::NumericalStress, STRIP, STRIP),
     (Term::NumericalWork, ("strip_damping", "dissipated energy"), FILM_LEDGER),
     (Term::Creep, ("strip_loss", "log decrement"), ("strip_loss", "run")),

@@ -46,13 +46,21 @@ pub(super) fn mesh(
         triangles: Vec::new(),
         reference: Vec::new(),
         parts: Vec::new(),
+        facets: Vec::new(),
         bottom_ring: Vec::new(),
         top_ring: Vec::new(),
         bottom_centre: 0,
         top_centre: 0,
     };
     let mut nodes: HashMap<NodeKey, u32> = HashMap::new();
-    for piece in &pieces(pattern) {
+    let mut facet = 0;
+    for (index, piece) in pieces(pattern).iter().enumerate() {
+        // A cap is one flat sheet of several wedges.
+        let same_sheet =
+            !matches!(piece.part, Part::Storey(_)) && mesh.parts.last() == Some(&piece.part);
+        if index > 0 && !same_sheet {
+            facet += 1;
+        }
         let mut node = |weights: [u32; 3]| {
             let key = placement.key(piece, weights);
             let next = u32::try_from(mesh.positions.len()).expect("under 2^32 nodes");
@@ -73,6 +81,7 @@ pub(super) fn mesh(
                     mesh.triangles.push(weights.map(&mut node));
                     mesh.reference.push(weights.map(|weights| placement.reference(piece, weights)));
                     mesh.parts.push(piece.part);
+                    mesh.facets.push(facet);
                 }
             }
         }

@@ -45,6 +45,8 @@ pub struct Mesh {
     pub reference: Vec<[Vector2<f64>; 3]>,
     /// Piece of film of each element.
     pub parts: Vec<Part>,
+    /// Flat sheet of film each element belongs to: a facet, or a whole cap.
+    pub facets: Vec<u32>,
     /// Nodes of the bottom ring, counter-clockwise seen from above.
     pub bottom_ring: Vec<u32>,
     /// Nodes of the top ring, counter-clockwise seen from above.
@@ -86,6 +88,18 @@ impl Mesh {
         edges.sort_unstable();
         edges.dedup();
         edges
+    }
+
+    /// Edges on fold lines, which lie between two facets, lower node first; ascending.
+    pub fn folds(&self) -> Vec<[u32; 2]> {
+        let mut edges: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * self.triangles.len());
+        for (&[a, b, c], facet) in self.triangles.iter().zip(&self.facets) {
+            edges.extend([[a, b], [b, c], [c, a]].map(|[p, q]| ([p.min(q), p.max(q)], *facet)));
+        }
+        edges.sort_unstable();
+        let two_facets =
+            |pair: &&[([u32; 2], u32)]| pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1;
+        edges.windows(2).filter(two_facets).map(|pair| pair[0].0).collect()
     }
 
     /// Corner positions of each element.

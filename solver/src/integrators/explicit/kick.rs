@@ -17,19 +17,19 @@ use crate::platform::fault_injection::Term;
 use crate::system::{FilmState, FilmSystem, bind};
 
 impl Explicit {
-    /// Kicks the velocities over `kick` (s), before a drift of `length` (s) that ends at the time `end`
+    /// Kicks the velocities over `kick` (s), by the further energies over `term_kick` (s), before a drift of `length` (s) that ends at the time `end`
     /// (s). Adds the works of mass damping and of moving supports.
     pub(super) fn kick(
         &mut self,
         system: &FilmSystem,
         state: &FilmState,
-        kick: f64,
+        (kick, term_kick): (f64, f64),
         length: f64,
         end: f64,
     ) {
         let mut next = core::mem::take(&mut self.next);
         let mut planes = core::mem::take(&mut self.motion.planes);
-        self.kick_free(system, state, kick, &mut next, &mut planes);
+        self.kick_free(system, state, (kick, term_kick), &mut next, &mut planes);
         if self.motion.last_step == 0.0 {
             self.motion.accounting.works.numerical_dissipation +=
                 self.starting_loss(system, &next, &planes);
@@ -53,19 +53,23 @@ impl Explicit {
         &self,
         system: &FilmSystem,
         state: &FilmState,
-        kick: f64,
+        (kick, term_kick): (f64, f64),
         next: &mut Field,
         planes: &mut [f64],
     ) {
         let damping = system.mass_damping * system.fault_factor(Term::MassDamping);
         let (keep, gain) = kick_factors(damping, kick);
         let gain = gain * system.fault_factor(Term::Kick);
+        let term_gain = kick_factors(damping, term_kick).1;
         let (supports, model) = (&system.supports, &system.model);
         let (forces, velocities) = (&self.workspace.forces, &self.motion.velocities);
         let overpressure = system.overpressure(state);
         let change = |node: usize| {
-            let force = system.node_force(forces, overpressure, node);
-            velocities.get(node) * (keep - 1.0) + force * (gain * model.inverse_mass[node])
+            let mut impulse = system.node_force(forces, overpressure, node) * gain;
+            if !system.energy_terms.is_empty() {
+                impulse += forces.terms.get(node) * (term_gain - gain);
+            }
+            velocities.get(node) * (keep - 1.0) + impulse * model.inverse_mass[node]
         };
         let kick_parameters = KickParameters {
             overpressure,
@@ -77,9 +81,9 @@ impl Explicit {
         };
         let set = system.instruction_set;
         kick_nodes(set, model, forces, &kick_parameters, &supports.free, velocities, next);
-        if !system.energy_terms.is_empty() {
+        if term_gain != 0.0 && !system.energy_terms.is_empty() {
             for node in 0..model.nodes() {
-                let gained = forces.terms.get(node) * (gain * model.inverse_mass[node]);
+                let gained = forces.terms.get(node) * (term_gain * model.inverse_mass[node]);
                 next.set(node, next.get(node) + gained.component_mul(&supports.free.get(node)));
             }
         }
@@ -187,7 +191,7 @@ impl Explicit {
         let mut velocities = core::mem::take(&mut state.velocities);
         let mut planes = core::mem::take(&mut state.planes);
         planes.copy_from_slice(&self.motion.planes);
-        let kick = 0.5 * self.motion.last_step;
+        let kick = (0.5 * self.motion.last_step, self.motion.terms.owed);
         self.kick_free(system, state, kick, &mut velocities, &mut planes);
         (state.velocities, state.planes) = (velocities, planes);
     }
@@ -196,7 +200,8 @@ impl Explicit {
     pub(super) fn kinetic_energy(&self, system: &FilmSystem, state: &FilmState) -> f64 {
         let Self { motion, .. } = self;
         let (mut next, mut planes) = (Field::zeros(system.model.nodes()), motion.planes.clone());
-        self.kick_free(system, state, motion.last_step, &mut next, &mut planes);
+        let kick = (motion.last_step, 2.0 * motion.terms.owed);
+        self.kick_free(system, state, kick, &mut next, &mut planes);
         let node = |node: usize| {
             system.model.mass[node] * motion.velocities.get(node).dot(&next.get(node))
         };

@@ -38,7 +38,7 @@ use crate::platform::stopwatch::Stage;
 use crate::scene::inflow::Inflow;
 use crate::system::{FilmState, FilmSystem, PressureLoad, Workspace};
 
-use motion::Motion;
+use motion::{Motion, TermClock};
 use update::{drift_nodes, sparse_power};
 
 mod collisions;
@@ -162,7 +162,8 @@ impl Explicit {
                 self.wait(system, state, interval.length, phase.inflow);
                 state.time = end;
             } else {
-                self.step(system, state, interval.length, end, phase.inflow, budget)?;
+                let left = interval.count - interval.index + 1;
+                self.step(system, state, (interval.length, left), end, phase.inflow, budget)?;
                 state.time = end;
                 budget.audit.record(system, state)?;
             }
@@ -170,11 +171,13 @@ impl Explicit {
             if self.activity_detected(system, state, &interval)
                 || self.step_too_long(system, state, &interval)
             {
+                self.motion.terms.steps = 0;
                 interval = self
                     .replan_interval(system, state, interval.target, budget.events)
                     .ok_or_else(|| no_advance(state))?;
             }
         }
+        system.term_forces(&state.positions, &mut self.workspace.forces);
         budget.stopwatch.begins(Stage::Audit);
         budget.audit.complete(system, state)?;
         Ok(Advance::Reached)
@@ -218,17 +221,17 @@ impl Explicit {
 
     /// A step in which no node moves: packed film without contact.
     fn wait(&mut self, system: &FilmSystem, state: &mut FilmState, length: f64, inflow: Inflow) {
-        self.motion.last_step = 0.0;
+        (self.motion.last_step, self.motion.terms) = (0.0, TermClock::default());
         let (volume, gas) = (state.volume, system.gas_step(state, state.volume, length, inflow));
         self.motion.accounting.commit_gas(system, state, gas, volume);
     }
 
-    /// A step of `length` (s) that ends at the time `end` (s).
+    /// A step of `length` (s) that ends at the time `end` (s). `left`: the planned steps of this length, with this one.
     fn step(
         &mut self,
         system: &FilmSystem,
         state: &mut FilmState,
-        length: f64,
+        (length, left): (f64, u64),
         end: f64,
         inflow: Inflow,
         budget: &mut Budget<'_>,
@@ -236,7 +239,11 @@ impl Explicit {
         let stopwatch = &mut *budget.stopwatch;
         stopwatch.begins(Stage::Update);
         let kick = 0.5 * (self.motion.last_step + length);
-        self.kick(system, state, kick, length, end);
+        let term_kick = self.motion.terms.step(system, length, left);
+        if term_kick != 0.0 {
+            system.term_forces(&state.positions, &mut self.workspace.forces);
+        }
+        self.kick(system, state, (kick, term_kick), length, end);
         self.collision_step(system, state, kick, length, stopwatch)?;
         stopwatch.begins(Stage::Update);
         self.half_step_works(system, state, length);

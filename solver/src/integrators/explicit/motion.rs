@@ -41,12 +41,77 @@ pub struct Motion {
     pub planes: Vec<f64>,
     /// Length of the last step, s; 0 before the first.
     pub last_step: f64,
+    /// When the further energies kick.
+    pub terms: TermClock,
     /// Whether the film is quiescent, and since when.
     pub quiescence: Quiescence,
     /// The current step interval, if the run was paused within one.
     pub step_interval: Option<StepInterval>,
     /// Energy accounting since time 0.
     pub accounting: EnergyAccounting,
+}
+
+/// The kicks of the further energies. They are slow, so one kick serves several steps: it covers half of the steps
+/// before it and half of those after it.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TermClock {
+    /// Time that has passed and no kick has covered, s; negative while a kick covers time to come.
+    pub owed: f64,
+    /// Steps until the next kick.
+    pub steps: u64,
+}
+
+/// Upper bound of the time between two kicks of the terms, times a bound of their frequency. Chosen: a 30th of a
+/// period.
+const MAX_TERM_PHASE: f64 = 0.2;
+/// Upper bound of that time times the largest frequency of the film. Kicks in time with a mode of the film would drive
+/// it: they come faster than any, with a tenth to spare.
+const MAX_FILM_PHASE: f64 = 0.9 * 2.0 * core::f64::consts::PI;
+
+impl TermClock {
+    /// The time (s) that a kick at the start of a step of this length (s) covers, 0 between two kicks, and the clock
+    /// after the step. `left`: the steps of this length that are planned, this one included.
+    pub(super) fn step(&mut self, system: &FilmSystem, length: f64, left: u64) -> f64 {
+        if system.energy_terms.is_empty() {
+            return 0.0;
+        }
+        let mut kick = 0.0;
+        if self.steps == 0 {
+            self.steps = term_steps(system, length).min(left);
+            let half = 0.5 * self.steps as f64 * length;
+            kick = self.owed + half;
+            self.owed = -half;
+        }
+        self.owed += length;
+        self.steps -= 1;
+        kick
+    }
+}
+
+/// Steps of a length (s) from one kick of the terms to the next. One where a term is fast, a support needs its forces at
+/// each step, or motion is damped.
+fn term_steps(system: &FilmSystem, length: f64) -> u64 {
+    let supports = &system.supports;
+    let slow = system.energy_terms.iter().all(|term| term.is_slow());
+    if !slow
+        || !supports.movers.is_empty()
+        || !supports.bodies.is_empty()
+        || system.mass_damping > 0.0
+    {
+        return 1;
+    }
+    let terms = system.energy_terms.iter();
+    let squared: f64 = terms.map(|term| term.frequency_squared(&system.model.mass)).sum();
+    let phase =
+        (squared.sqrt() / MAX_TERM_PHASE).max(system.model.largest_frequency() / MAX_FILM_PHASE);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "at least 1; saturates"
+    )]
+    let steps = (1.0 / (phase * length)).max(1.0) as u64;
+    steps
 }
 
 impl Motion {
@@ -56,6 +121,7 @@ impl Motion {
             velocities: state.velocities.clone(),
             planes: state.planes.clone(),
             last_step: 0.0,
+            terms: TermClock::default(),
             quiescence: Quiescence::default(),
             step_interval: None,
             accounting,

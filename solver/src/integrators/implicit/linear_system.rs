@@ -1,16 +1,17 @@
 //! The linear system of a Newton step, and its solution.
 //!
 //! ```text
-//! A = w M + K_faces + K_pairs + κ g gᵀ        A d = r
-//! P = w M + K_faces + diag(K_pairs) + κ g gᵀ  P⁻¹ by Cholesky, the gas by Sherman and Morrison
+//! A = w M + K_faces + K_terms + K_pairs + κ g gᵀ          A d = r
+//! P = w M + K_faces + K_patches + diag(K_pairs) + κ g gᵀ  P⁻¹ by Cholesky, the gas by Sherman and Morrison
 //! ```
 //!
-//! Symbols: w weight of the inertia, 1/s²; K of membrane and pressure on faces; of contacts, plates and further
-//! terms; κ g gᵀ stiffness of the gas, which is never a dense matrix. Conjugate gradients with P as preconditioner
-//! solve it; without pairs A = P, and one solution is exact. Where P is not positive definite, w grows.
+//! Symbols: w weight of the inertia, 1/s²; K of membrane and pressure on faces; of the further energies, and their
+//! upper bound, patch by patch; of contacts and plates; κ g gᵀ stiffness of the gas, which is never a dense matrix. Conjugate gradients with P as preconditioner
+//! solve it; without pairs and further energies A = P, and one solution is exact. Where P is not positive definite, w grows.
 
-use nalgebra::{Matrix3, SVector};
+use nalgebra::{DMatrix, Matrix3, SVector};
 
+use crate::factorisation::conjugate_gradients::conjugate_gradients;
 use crate::factorisation::factor::{Elimination, Factor};
 use crate::factorisation::unknowns::{Unknowns, dot};
 use crate::geometry::field::Field;
@@ -21,8 +22,6 @@ use crate::system::{Evaluation, FilmState, FilmSystem, Workspace};
 
 /// Residual of conjugate gradients over the right side, in the norm of P⁻¹. Chosen: a Newton step needs no more.
 const MAX_RESIDUAL: f64 = 1e-4;
-/// Most products of one solution. Chosen: more cost as much as another Newton step.
-const MAX_PRODUCTS: u32 = 100;
 /// First weight that is added where P is not positive definite, over w, and its growth. Chosen.
 const FIRST_SHIFT: f64 = 1.0;
 const SHIFT_GROWTH: f64 = 8.0;
@@ -41,6 +40,9 @@ pub(super) struct LinearSystem {
     faces: Vec<[u32; 3]>,
     places: Vec<Place>,
     stiffness: Vec<Stiffness>,
+    patches: Vec<DMatrix<f64>>,
+    /// Positions that the stiffness is of, m; only for further energies.
+    at: Field,
     pairs: Vec<([u32; 2], Matrix3<f64>)>,
     /// Diagonal of w M, and of the pairs, along the unknowns.
     inertia: Vec<f64>,
@@ -63,12 +65,17 @@ impl LinearSystem {
     pub(super) fn new(system: &FilmSystem, state: &FilmState, ordered_at: &Field) -> Self {
         let model = &system.model;
         let unknowns = Unknowns::new(model, &system.supports);
-        let elimination = Elimination::new(model, &unknowns, ordered_at);
-        let faces: Vec<[u32; 3]> = model.triangles.iter().chain(&model.closure).copied().collect();
+        let (faces, patches) = (model.faces(), system.patches());
+        let elimination = Elimination::new(&faces, &patches, &unknowns, ordered_at);
         let places = places(system, state, &faces);
         let zeros = || Field::zeros(model.nodes());
         Self {
             stiffness: vec![Stiffness::zeros(); faces.len()],
+            patches: patches
+                .iter()
+                .map(|nodes| DMatrix::zeros(3 * nodes.len(), 3 * nodes.len()))
+                .collect(),
+            at: zeros(),
             inertia: vec![0.0; unknowns.len()],
             pair_diagonal: vec![0.0; unknowns.len()],
             unknowns,
@@ -97,6 +104,10 @@ impl LinearSystem {
         let faces = system.face_stiffness(&state.creep, positions, overpressure);
         for ((_, stiffness), (face, corners)) in faces.zip(&self.places) {
             add_permuted(&mut self.stiffness[*face], &stiffness, corners);
+        }
+        if !system.energy_terms.is_empty() {
+            self.at.copy_from(positions);
+            system.patch_stiffness(positions, &mut self.patches);
         }
         let pairs = &mut self.pairs;
         pairs.clear();
@@ -141,7 +152,8 @@ impl LinearSystem {
             }
             let diagonal = self.inertia.iter().zip(&self.pair_diagonal);
             let shift: Vec<f64> = diagonal.map(|(inertia, pairs)| inertia + pairs).collect();
-            if self.elimination.factor(set, &self.stiffness, &shift, &mut self.factor) {
+            let matrices = (&self.stiffness[..], &self.patches[..]);
+            if self.elimination.factor(set, matrices, &shift, &mut self.factor) {
                 return true;
             }
             total = weight + added;
@@ -163,7 +175,7 @@ impl LinearSystem {
     }
 
     /// A d.
-    fn product(&mut self, d: &[f64]) -> Vec<f64> {
+    fn product(&mut self, system: &FilmSystem, d: &[f64]) -> Vec<f64> {
         let [moves, forces] = &mut self.scratch;
         for node in 0..moves.len() {
             moves.set(node, self.unknowns.displacement(node, d));
@@ -181,6 +193,7 @@ impl LinearSystem {
                 forces.set(node, forces.get(node) + force);
             }
         }
+        system.add_term_products((&self.at, &self.patches), moves, forces);
         for ([first, second], block) in &self.pairs {
             let force = block * moves.get(*second as usize);
             let first = *first as usize;
@@ -198,40 +211,20 @@ impl LinearSystem {
     }
 
     /// d of A d = r, a direction of descent: where A has no positive curvature along a direction, the sum so far.
-    pub(super) fn solve(&mut self, set: InstructionSet, r: &[f64]) -> Vec<f64> {
-        let mut z = self.precondition(set, r);
-        if self.pairs.is_empty() {
+    pub(super) fn solve(&mut self, system: &FilmSystem, r: &[f64]) -> Vec<f64> {
+        let set = system.instruction_set;
+        let z = self.precondition(set, r);
+        if self.pairs.is_empty() && system.energy_terms.is_empty() {
             return z;
         }
-        let mut residual = r.to_vec();
-        let mut d = vec![0.0; r.len()];
-        let mut along = z.clone();
-        let mut size = dot(&residual, &z);
-        let enough = MAX_RESIDUAL * MAX_RESIDUAL * size;
-        for index in 0..MAX_PRODUCTS {
-            let product = self.product(&along);
-            let curvature = dot(&along, &product);
-            let positive = curvature > 0.0;
-            if !positive {
-                return if index == 0 { z } else { d };
-            }
-            let length = size / curvature;
-            for k in 0..d.len() {
-                d[k] += length * along[k];
-                residual[k] -= length * product[k];
-            }
-            z = self.precondition(set, &residual);
-            let next = dot(&residual, &z);
-            if next <= enough {
-                break;
-            }
-            let share = next / size;
-            size = next;
-            for (along, z) in along.iter_mut().zip(&z) {
-                *along = z + share * *along;
-            }
-        }
-        d
+        let start = (r, z);
+        conjugate_gradients(
+            self,
+            start,
+            MAX_RESIDUAL,
+            |all, r| all.precondition(set, r),
+            |all, d| all.product(system, d),
+        )
     }
 }
 

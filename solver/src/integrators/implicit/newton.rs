@@ -93,7 +93,7 @@ impl Newton {
             if !self.system.prepare(system, &increment.state, at, here, weight) {
                 return None;
             }
-            let step = self.system.solve(system.instruction_set, &residual);
+            let step = self.system.solve(system, &residual);
             let slope = dot(&step, &residual);
             let finite = slope.is_finite() && slope >= 0.0;
             if !finite {

@@ -256,6 +256,11 @@ impl FilmModel {
         self.triangles.len()
     }
 
+    /// Nodes of the elements, then those of the closing faces.
+    pub fn faces(&self) -> Vec<[u32; 3]> {
+        self.triangles.iter().chain(&self.closure).copied().collect()
+    }
+
     /// The largest `ω_e`, rad/s: an upper bound of all frequencies of the assembled film at rest
     /// (Rayleigh quotient: stiffness and mass of the film are sums over the elements).
     pub fn largest_frequency(&self) -> f64 {

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::imperfection;
 pub use super::reference_gap::{contact_distance, imperfection_amplitude};
+use crate::bending::Bending;
 use crate::collision::contact::{Adhesion, ContactModel};
 use crate::geometry::field::Field;
 use crate::geometry::fold::{FoldDesign, FoldPattern};
@@ -154,8 +155,12 @@ pub fn constants(
             (PressureLoad::Gas(gas), gas.at_temperature(supply.initial_mass, *initial_temperature))
         }
     };
+    let (film, shell, set) = (&scene.film, &scene.shell, solver.instruction_set);
+    let held = |node| supports.hold_fully(node);
+    let energy_terms = Bending::terms(film, &model, shell, set, held);
     let system = FilmSystem {
         supports,
+        energy_terms,
         gravity: scene.gravity,
         numerical_damping: scene.film.numerical_damping,
         mass_damping: solver.mass_damping,

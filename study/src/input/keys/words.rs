@@ -101,6 +101,7 @@ pub const fn model(kind: ModelKind) -> Model {
             ignores: &[
                 "design.subdivisions",
                 "film.compression",
+                "film.bending",
                 "film.loss_factor",
                 "film.loss_frequency",
                 "film.numerical_damping",
@@ -123,6 +124,7 @@ pub const fn model(kind: ModelKind) -> Model {
             ignores: &[
                 "design.subdivisions",
                 "film.compression",
+                "film.bending",
                 "contact.distance",
                 "contact.friction",
                 "contact.adhesion",

@@ -23,6 +23,7 @@ pub(crate) mod reference;
 pub mod rig;
 mod row;
 
+mod bending;
 pub mod contact_capsule;
 mod contact_impacts;
 mod contact_plates;
@@ -112,6 +113,13 @@ pub const CASES: &[Case] = &[
     long("end_state", static_end_state::aligned),
     long("end_state_pattern", static_end_state::pattern),
     quick("end_state_polygon", contact_relaxed::end_state_polygon),
+    quick("heavy_strip", |rig| bending::heavy_strip(rig, &[0], 0..2)),
+    long("heavy_strip_meshes", |rig| bending::heavy_strip(rig, &[1, 2], 0..2)),
+    long("heavy_strip_heaviest", |rig| bending::heavy_strip(rig, &[0, 1, 2], 2..3)),
+    quick("end_shear", bending::end_shear),
+    quick("column", bending::column),
+    quick("clamped_plate", bending::clamped_plate),
+    quick("plate_frequency", bending::plate_frequency),
     quick("stack", contact_plates::stack_of_sheets),
     quick("tube_between_plates", contact_plates::tube_between_plates),
     quick("films_at_50_m_s", contact_impacts::films_at_50_m_s),

@@ -5,13 +5,14 @@ use std::sync::LazyLock;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-static FILES: LazyLock<[Value; 5]> = LazyLock::new(|| {
+static FILES: LazyLock<[Value; 6]> = LazyLock::new(|| {
     [
         include_str!("../../../reference/gas.json"),
         include_str!("../../../reference/film.json"),
         include_str!("../../../reference/dynamics.json"),
         include_str!("../../../reference/statics.json"),
         include_str!("../../../reference/contact.json"),
+        include_str!("../../../reference/bending.json"),
     ]
     .map(|text| serde_json::from_str(text).expect("JSON in tests/reference"))
 });

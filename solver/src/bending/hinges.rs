@@ -1,0 +1,334 @@
+//! Hinges: edges between two elements, their turn and its gradient.
+//!
+//! ```text
+//! kite s, a, t, b with edges p = a − s, d = t − s, q = b − s, l = |d|
+//!   normals        N1 = p × d    N2 = d × q
+//!   turn           u = 2 tan(θ/2) = 2 l p·N2/(|N1||N2| + N1·N2)          positive where film folds inward
+//!   gradient       ∂θ/∂a = g1 = l N1/|N1|²     ∂θ/∂b = g2 = l N2/|N2|²
+//!                  ∂θ/∂t = −(α1 g1 + α2 g2)    ∂θ/∂s = −((1−α1) g1 + (1−α2) g2)
+//!                  α1 = p·d/l²   α2 = q·d/l²    ∂u/∂θ = 1 + u²/4
+//! ```
+//!
+//! Beyond [`MAX_SMOOTH_TURN`] u goes on with the slope that it has there.
+
+#![allow(clippy::inline_always, reason = "inside the loop over hinges")]
+
+use core::f64::consts::PI;
+use std::collections::BTreeMap;
+
+use nalgebra::{SMatrix, Vector3};
+
+use crate::geometry::field::Field;
+use crate::geometry::shell::Shell;
+use crate::mechanics::film_model::FilmModel;
+use crate::platform::simd::{
+    Columns, Corners, InstructionSet, Lanes, NodeSum, Vectors, WIDTH, Wide, dispatch_wide,
+};
+
+/// θ up to which u = 2 tan(θ/2), rad. Chosen: the mesh of the capsule at n 8 reaches the plastic moment of its film
+/// (1.1e-2 N) near it, and the stiffness of a hinge stays below 16 times that of flat film.
+pub const MAX_SMOOTH_TURN: f64 = 2.0 * PI / 3.0;
+/// Cosine of that angle.
+const MIN_COSINE: f64 = -0.5;
+/// Difference of the reference coordinates of a shared node over the edge at which two elements lie in one
+/// reference plane. Chosen: above rounding.
+const SAME_PLACE: f64 = 1e-9;
+
+/// u at [`MAX_SMOOTH_TURN`].
+fn largest_smooth() -> f64 {
+    2.0 * libm::tan(0.5 * MAX_SMOOTH_TURN)
+}
+
+/// The largest ∂u/∂θ.
+pub fn largest_slope() -> f64 {
+    1.0 + 0.25 * largest_smooth() * largest_smooth()
+}
+
+/// Eight hinges at some positions.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct HingeBlock {
+    /// g1 and g2, 1/m.
+    gradients: [Vectors; 2],
+    /// α1 and α2.
+    along: [Lanes; 2],
+    /// ∂u/∂θ.
+    slope: Lanes,
+}
+
+/// The hinges of a film, in the order of their unknowns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hinges {
+    /// Nodes s, a, t, b.
+    pub nodes: Vec<[u32; 4]>,
+    /// Elements (s, a, t) and (s, t, b), each with the corner opposite to the edge.
+    pub sides: Vec<[(usize, usize); 2]>,
+    /// Largest |∂θ/∂x| of the nodes s, a, t, b in the reference, 1/m.
+    pub leverages: Vec<[f64; 4]>,
+    corners: Corners,
+    /// ū; zero past the last hinge.
+    rest: Vec<f64>,
+}
+
+impl Hinges {
+    /// The hinges of a shell: inner edges that do not lie on a fold line or between two rigid elements.
+    pub(super) fn new(model: &FilmModel, shell: &Shell, rigid: &[bool]) -> Self {
+        let mut directed = BTreeMap::new();
+        for (element, nodes) in model.triangles.iter().enumerate() {
+            for corner in 0..3 {
+                directed
+                    .insert([nodes[(corner + 1) % 3], nodes[(corner + 2) % 3]], (element, corner));
+            }
+        }
+        let (mut nodes, mut sides, mut leverages, mut flat) =
+            (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        // In the order of the elements, so that facets with the same mesh have the same order.
+        let all =
+            (0..model.elements()).flat_map(|element| [0, 1, 2].map(|corner| (element, corner)));
+        for first in all {
+            let nodes_of = model.triangles[first.0];
+            let (t, s) = (nodes_of[(first.1 + 1) % 3], nodes_of[(first.1 + 2) % 3]);
+            let Some(&second) = directed.get(&[s, t]) else { continue };
+            let folded = shell.folds.binary_search(&[s.min(t), s.max(t)]).is_ok();
+            if second.0 < first.0 || folded || (rigid[first.0] && rigid[second.0]) {
+                continue;
+            }
+            let opposite = |(element, corner): (usize, usize)| model.triangles[element][corner];
+            nodes.push([s, opposite(first), t, opposite(second)]);
+            sides.push([first, second]);
+            leverages.push(leverage(shell, [first, second]));
+            flat.push(in_one_plane(shell, [first, second]));
+        }
+        let corners = Corners::new(&nodes, model.nodes());
+        let rest = vec![0.0; corners.blocks() * WIDTH];
+        let mut hinges = Self { nodes, sides, leverages, corners, rest };
+        let (mut blocks, mut turns) = (Vec::new(), Vec::new());
+        let start = Field::of(&shell.positions);
+        hinges.measure(InstructionSet::Scalar, &start, &mut blocks, &mut turns);
+        for (hinge, flat) in flat.into_iter().enumerate() {
+            hinges.rest[hinge] = if flat { 0.0 } else { turns[hinge] };
+        }
+        hinges
+    }
+
+    /// Number of hinges.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// Computes shape and u − ū of the hinges at these positions (m); zero past the last hinge.
+    pub(super) fn measure(
+        &self,
+        set: InstructionSet,
+        positions: &Field,
+        blocks: &mut Vec<HingeBlock>,
+        turns: &mut Vec<f64>,
+    ) {
+        blocks.resize(self.corners.blocks(), HingeBlock::default());
+        turns.resize(self.rest.len(), 0.0);
+        let largest = largest_smooth();
+        measure_hinges(set, &self.corners, positions, largest, &self.rest, blocks, turns);
+    }
+
+    /// Sets `sums` to the forces (N) of moments (N m) at hinges of these shapes.
+    pub(super) fn add_forces(
+        &self,
+        set: InstructionSet,
+        blocks: &[HingeBlock],
+        moments: &mut Vec<f64>,
+        sums: &mut [NodeSum],
+    ) {
+        moments.resize(self.rest.len(), 0.0);
+        if self.is_empty() {
+            sums.fill(NodeSum::default());
+        }
+        sum_forces(set, &self.corners, blocks, moments, sums);
+    }
+
+    /// ∂u/∂x of the nodes s, a, t, b of a hinge, 1/m.
+    pub(super) fn gradient(blocks: &[HingeBlock], hinge: usize) -> [Vector3<f64>; 4] {
+        let (block, lane) = (&blocks[hinge / WIDTH], hinge % WIDTH);
+        let slope = block.slope.0[lane];
+        let [a, b] =
+            block.gradients.map(|v| Vector3::new(v.x.0[lane], v.y.0[lane], v.z.0[lane]) * slope);
+        let t = -(a * block.along[0].0[lane] + b * block.along[1].0[lane]);
+        [-(a + b + t), a, t, b]
+    }
+}
+
+/// Step of the differences in [`Hinges::second_gradients`] over the edge. Chosen: between rounding and curvature.
+const DIFFERENCE: f64 = 1e-5;
+
+impl Hinges {
+    /// ∂²u/∂x² of the nodes s, a, t, b of each hinge at these positions (m), 1/m²: central differences of ∂u/∂x.
+    pub(super) fn second_gradients(&self, positions: &Field) -> Vec<SMatrix<f64, 12, 12>> {
+        // Each hinge with nodes for itself, so that one pass moves the same component of all hinges.
+        let count = u32::try_from(4 * self.len()).expect("under 2^32");
+        let nodes: Vec<[u32; 4]> =
+            (0..count).step_by(4).map(|k| [k, k + 1, k + 2, k + 3]).collect();
+        let corners = Corners::new(&nodes, count as usize);
+        let alone = Self {
+            corners,
+            nodes,
+            sides: Vec::new(),
+            leverages: Vec::new(),
+            rest: self.rest.clone(),
+        };
+        let at = |node: &u32| positions.get(*node as usize);
+        let corners: Vec<Vector3<f64>> = self.nodes.iter().flatten().map(at).collect();
+        let step = |hinge: usize| DIFFERENCE * (corners[4 * hinge + 2] - corners[4 * hinge]).norm();
+        let mut second = vec![SMatrix::<f64, 12, 12>::zeros(); self.len()];
+        let (mut blocks, mut turns) = (Vec::new(), Vec::new());
+        for (row, sign) in (0..12).flat_map(|row| [(row, 1.0), (row, -1.0)]) {
+            let mut moved = corners.clone();
+            for hinge in 0..self.len() {
+                moved[4 * hinge + row / 3][row % 3] += sign * step(hinge);
+            }
+            alone.measure(InstructionSet::detect(), &Field::of(&moved), &mut blocks, &mut turns);
+            for (hinge, second) in second.iter_mut().enumerate() {
+                let gradient = Self::gradient(&blocks, hinge);
+                for column in 0..12 {
+                    second[(row, column)] +=
+                        sign * gradient[column / 3][column % 3] / (2.0 * step(hinge));
+                }
+            }
+        }
+        second.iter().map(|second| 0.5 * (second + second.transpose())).collect()
+    }
+}
+
+/// Reference corners of an element, counted from the corner opposite to an edge.
+fn reference(shell: &Shell, (element, corner): (usize, usize)) -> [nalgebra::Vector2<f64>; 3] {
+    [0, 1, 2].map(|step| shell.reference[element][(corner + step) % 3])
+}
+
+/// Whether the references of two elements place their common edge alike.
+fn in_one_plane(shell: &Shell, sides: [(usize, usize); 2]) -> bool {
+    let [[_, t, s], [_, other_s, other_t]] = sides.map(|side| reference(shell, side));
+    let allowed = SAME_PLACE * (t - s).norm();
+    (t - other_t).norm() <= allowed && (s - other_s).norm() <= allowed
+}
+
+/// The leverages of the nodes s, a, t, b at a hinge.
+fn leverage(shell: &Shell, sides: [(usize, usize); 2]) -> [f64; 4] {
+    let [first, second] = sides.map(|side| reference(shell, side));
+    // Height of the opposite corner, and the share of the edge that is at its foot, from s on.
+    let measures = |opposite: nalgebra::Vector2<f64>, s: nalgebra::Vector2<f64>, t| {
+        let d: nalgebra::Vector2<f64> = t - s;
+        let p = opposite - s;
+        (1.0 / (d.perp(&p).abs() / d.norm()), p.dot(&d) / d.norm_squared())
+    };
+    let (a, at_a) = measures(first[0], first[2], first[1]);
+    let (b, at_b) = measures(second[0], second[1], second[2]);
+    [(1.0 - at_a).abs() * a + (1.0 - at_b).abs() * b, a, at_a.abs() * a + at_b.abs() * b, b]
+}
+
+/// θ-proportional u beyond [`MAX_SMOOTH_TURN`]; `sine` and `cosine` of θ up to a common factor.
+fn folded_turn(largest: f64, sine: f64, cosine: f64) -> f64 {
+    let beyond = libm::atan2(sine.abs(), cosine) - MAX_SMOOTH_TURN;
+    let turn = largest + (1.0 + 0.25 * largest * largest) * beyond;
+    if sine < 0.0 { -turn } else { turn }
+}
+
+#[inline(always)]
+fn plain<L: Wide>(vectors: &Vectors<L>) -> Vectors {
+    Vectors { x: vectors.x.lanes(), y: vectors.y.lanes(), z: vectors.z.lanes() }
+}
+
+#[inline(always)]
+fn measure_kernel<L: Wide>(
+    corners: &Corners,
+    positions: &Field,
+    largest: f64,
+    rest: &[f64],
+    blocks: &mut [HingeBlock],
+    turns: &mut [f64],
+) {
+    let columns = Columns::new(corners, [&positions.x, &positions.y, &positions.z]);
+    // A lane without a hinge has no area: its gradient is zero.
+    let tiny = L::splat(f64::MIN_POSITIVE);
+    let largest_slope = L::splat(1.0 + 0.25 * largest * largest);
+    for block in 0..corners.blocks() {
+        let first = block * WIDTH;
+        let [s, a, t, b] = columns.corners::<L>(block, 0);
+        let (p, d, q) = (a - s, t - s, b - s);
+        let (n1, n2) = (p.cross(d), d.cross(q));
+        let (n1_squared, n2_squared) = (n1.dot(n1).max(tiny), n2.dot(n2).max(tiny));
+        let l_squared = d.dot(d).max(tiny);
+        let l = l_squared.sqrt();
+        let sine = l * p.dot(n2);
+        let cosine = n1.dot(n2);
+        let size = (n1_squared * n2_squared).sqrt();
+        let mut turn = (sine + sine).over((size + cosine).max(tiny));
+        let mut slope = L::splat(1.0) + turn * turn * 0.25;
+        let beyond = size * MIN_COSINE - cosine;
+        if beyond.lanes().largest() > 0.0 {
+            let (sine, cosine, beyond_lanes) = (sine.lanes(), cosine.lanes(), beyond.lanes());
+            let mut lanes = turn.lanes();
+            for lane in 0..WIDTH {
+                if beyond_lanes.0[lane] > 0.0 {
+                    lanes.0[lane] = folded_turn(largest, sine.0[lane], cosine.0[lane]);
+                }
+            }
+            turn = L::load(&lanes.0, 0);
+            slope = beyond.if_positive(largest_slope, slope);
+        }
+        (turn - L::load(rest, first)).store(turns, first);
+        let out = &mut blocks[block];
+        let scaled = [n1.scale(l.over(n1_squared)), n2.scale(l.over(n2_squared))];
+        out.gradients = [plain(&scaled[0]), plain(&scaled[1])];
+        out.along = [p.dot(d).over(l_squared).lanes(), q.dot(d).over(l_squared).lanes()];
+        out.slope = slope.lanes();
+    }
+}
+
+dispatch_wide! {
+    fn measure_hinges / measure_kernel(
+        corners: &Corners,
+        positions: &Field,
+        largest: f64,
+        rest: &[f64],
+        blocks: &mut [HingeBlock],
+        turns: &mut [f64],
+    )
+}
+
+#[inline(always)]
+fn load<L: Wide>(vectors: &Vectors) -> Vectors<L> {
+    let Vectors { x, y, z } = vectors;
+    Vectors { x: L::load(&x.0, 0), y: L::load(&y.0, 0), z: L::load(&z.0, 0) }
+}
+
+#[inline(always)]
+fn force_kernel<L: Wide>(
+    corners: &Corners,
+    blocks: &[HingeBlock],
+    moments: &[f64],
+    sums: &mut [NodeSum],
+) {
+    let zero = L::splat(0.0);
+    let none = Vectors { x: zero, y: zero, z: zero };
+    let mut cleared = 0;
+    for (block, HingeBlock { gradients, along, slope }) in blocks.iter().enumerate() {
+        cleared = corners.clear_sums(block, cleared, sums);
+        let factor = -(L::load(moments, block * WIDTH) * L::load(&slope.0, 0));
+        let a = load::<L>(&gradients[0]).scale(factor);
+        let b = load::<L>(&gradients[1]).scale(factor);
+        let t = -(a.scale(L::load(&along[0].0, 0)) + b.scale(L::load(&along[1].0, 0)));
+        let film = [-(a + b + t), a, t, b];
+        corners.scatter((block, 0), &film, &[none, none, none], sums);
+    }
+}
+
+dispatch_wide! {
+    fn sum_forces / force_kernel(
+        corners: &Corners,
+        blocks: &[HingeBlock],
+        moments: &[f64],
+        sums: &mut [NodeSum],
+    )
+}

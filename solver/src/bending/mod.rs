@@ -1,0 +1,204 @@
+//! Bending of film between the edges of its mesh: one moment an edge.
+//!
+//! ```text
+//! D = E t³/(12(1−ν²))
+//! u_e = 2 tan(θ_e/2)                    turn of the film at an edge; θ angle between the two elements
+//! t_T + t_T' = u_e − ū_e                slopes of both elements at the edge add up to the turn
+//! S_T = Σ_i (2 t_i/h_i) n_i nᵢᵀ         curvature of an element; n_i normal of its edge i in its plane, h_i height
+//! Π = Σ_T A_T D/2 ((1−ν) S:S + ν (tr S)²),  the smallest for all t
+//! ```
+//!
+//! With the element matrix K of Π in t, and its inverse C, the moments that balance at every edge are
+//!
+//! ```text
+//! Ĉ m = u − ū        Ĉ = Σ_T C_T, constant        Π = ½ m·(u − ū)        f = −Σ_e m_e ∂u_e/∂x
+//! ```
+//!
+//! so no slope is an unknown of the motion, and Π is a function of the positions alone. For small turns this is the
+//! plate element of L. S. D. Morley (1968), which is that of edge directors (E. Grinspun and others, "Computing
+//! discrete shape operators on general meshes", 2006) and, with moments as unknowns, that of Hellan, Herrmann and
+//! Johnson. It converges on every mesh tried (`docs/theory/bending.md`).
+//!
+//! The moment is zero on free edges and on fold lines, which turn freely. An element that is held at all its nodes
+//! does not bend: film beside it is clamped. Beyond [`hinges::MAX_SMOOTH_TURN`] the turn grows in proportion to θ.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use nalgebra::{DMatrix, SVector, Vector3};
+
+use crate::geometry::field::Field;
+use crate::geometry::shell::Shell;
+use crate::mechanics::energy_term::{EnergyTerm, Prepared};
+use crate::mechanics::film_model::FilmModel;
+use crate::platform::simd::{InstructionSet, NodeSum};
+use crate::scene::Film;
+
+mod compliance;
+pub mod hinges;
+
+use compliance::{Compliance, Work};
+use hinges::{HingeBlock, Hinges, largest_slope};
+
+/// The bending energy of film. Constant during a run.
+#[derive(Debug)]
+pub struct Bending {
+    hinges: Hinges,
+    compliance: Compliance,
+    /// Upper bound of the energy over ½ (u − ū)² at each hinge, N m.
+    stiffness: Vec<f64>,
+    /// Upper bound of ω² of the film's masses, rad²/s².
+    frequency_squared: f64,
+    instruction_set: InstructionSet,
+    /// Memory of an evaluation.
+    scratch: Mutex<Scratch>,
+}
+
+#[derive(Debug, Clone, Default)]
+struct Scratch {
+    /// Shape of the hinges, block by block.
+    blocks: Vec<HingeBlock>,
+    /// u − ū of each hinge.
+    turns: Vec<f64>,
+    /// Of the solution for moments.
+    work: Work,
+    sums: Vec<NodeSum>,
+}
+
+impl Bending {
+    /// The further energies of the film of a shell: its bending, if it has any. `held`: as in [`Self::new`].
+    pub fn terms(
+        film: &Film,
+        model: &FilmModel,
+        shell: &Shell,
+        instruction_set: InstructionSet,
+        held: impl Fn(u32) -> bool,
+    ) -> Vec<Arc<dyn EnergyTerm>> {
+        let new =
+            || -> Arc<dyn EnergyTerm> { Arc::new(Self::new(model, shell, instruction_set, held)) };
+        film.bending.then(new).into_iter().collect()
+    }
+
+    /// The bending of the film of a shell. `held`: whether supports hold a node in all directions.
+    pub fn new(
+        model: &FilmModel,
+        shell: &Shell,
+        instruction_set: InstructionSet,
+        held: impl Fn(u32) -> bool,
+    ) -> Self {
+        let rigid: Vec<bool> =
+            model.triangles.iter().map(|nodes| nodes.iter().all(|node| held(*node))).collect();
+        let hinges = Hinges::new(model, shell, &rigid);
+        let mut scratch = Scratch::default();
+        let (compliance, stiffness) = Compliance::factorised(model, shell, &hinges, &rigid);
+        scratch.sums = vec![NodeSum::default(); model.nodes()];
+        let frequency_squared = frequency_squared(&hinges, &stiffness, &model.mass);
+        let scratch = Mutex::new(scratch);
+        Self { hinges, compliance, stiffness, frequency_squared, instruction_set, scratch }
+    }
+
+    /// Computes u − ū at these positions (m), and the moments (N m) of the hinges.
+    fn moments(&self, positions: &Field) -> (MutexGuard<'_, Scratch>, Vec<f64>) {
+        // A panic elsewhere leaves the memory of an evaluation complete: every one fills it again.
+        let mut scratch = self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
+        let Scratch { blocks, turns, work, .. } = &mut *scratch;
+        self.hinges.measure(self.instruction_set, positions, blocks, turns);
+        let turns = &turns[..self.hinges.len()];
+        let mut moments = vec![0.0; turns.len()];
+        self.compliance.solve(self.instruction_set, turns, &mut moments, work);
+        (scratch, moments)
+    }
+}
+
+impl EnergyTerm for Bending {
+    fn energy(&self, positions: &Field) -> f64 {
+        let (scratch, moments) = self.moments(positions);
+        0.5 * moments.iter().zip(&scratch.turns).map(|(moment, turn)| moment * turn).sum::<f64>()
+    }
+
+    fn add_forces(&self, positions: &Field, forces: &mut Field) {
+        let (mut scratch, mut moments) = self.moments(positions);
+        let Scratch { blocks, sums, .. } = &mut *scratch;
+        self.hinges.add_forces(self.instruction_set, blocks, &mut moments, sums);
+        add_sums(sums, forces);
+    }
+
+    fn patches(&self) -> Vec<Vec<u32>> {
+        self.hinges.nodes.iter().map(|nodes| nodes.to_vec()).collect()
+    }
+
+    /// Each hinge for itself: k (∂u/∂x)(∂u/∂x)ᵀ + m ∂²u/∂x². The first part is an upper bound of that of K.
+    fn stiffness(&self, positions: &Field, patches: &mut [DMatrix<f64>]) {
+        let (scratch, moments) = self.moments(positions);
+        let second = self.hinges.second_gradients(positions);
+        for (hinge, patch) in patches.iter_mut().enumerate() {
+            let gradient = Hinges::gradient(&scratch.blocks, hinge);
+            let column = SVector::<f64, 12>::from_fn(|row, _| gradient[row / 3][row % 3]);
+            let bound = column * column.transpose() * self.stiffness[hinge];
+            patch.copy_from(&(bound + second[hinge] * moments[hinge]));
+        }
+    }
+
+    /// K = (∂u/∂x)ᵀ Ĉ⁻¹ ∂u/∂x + Σ m ∂²u/∂x², from the patches.
+    fn add_product(&self, stiffness: &Prepared<'_>, displacements: &Field, products: &mut Field) {
+        let (mut scratch, _) = self.moments(stiffness.positions);
+        let Scratch { blocks, sums, work, .. } = &mut *scratch;
+        let mut turns = Vec::with_capacity(self.hinges.len());
+        for (hinge, (nodes, patch)) in self.hinges.nodes.iter().zip(stiffness.patches).enumerate() {
+            let gradient = Hinges::gradient(blocks, hinge);
+            let moves = nodes.map(|node| displacements.get(node as usize));
+            let turn: f64 = moves.iter().zip(gradient).map(|(u, slope)| slope.dot(u)).sum();
+            // The patch without its bound is m ∂²u/∂x².
+            let along = SVector::<f64, 12>::from_fn(|row, _| moves[row / 3][row % 3]);
+            let bent = patch * along;
+            let bound = self.stiffness[hinge] * turn;
+            for (corner, node) in nodes.iter().enumerate() {
+                let node = *node as usize;
+                let part = bent.fixed_rows::<3>(3 * corner) - gradient[corner] * bound;
+                products.set(node, products.get(node) + part);
+            }
+            turns.push(turn);
+        }
+        let mut moments = vec![0.0; turns.len()];
+        self.compliance.solve(self.instruction_set, &turns, &mut moments, work);
+        for moment in &mut moments {
+            *moment = -*moment;
+        }
+        self.hinges.add_forces(self.instruction_set, blocks, &mut moments, sums);
+        add_sums(sums, products);
+    }
+
+    /// It acts across the film, which is stiff only along itself.
+    fn is_slow(&self) -> bool {
+        true
+    }
+
+    fn frequency_squared(&self, _: &[f64]) -> f64 {
+        self.frequency_squared
+    }
+}
+
+fn add_sums(sums: &[NodeSum], forces: &mut Field) {
+    for (node, sum) in sums.iter().enumerate() {
+        let [x, y, z, _] = sum.film;
+        forces.set(node, forces.get(node) + Vector3::new(x, y, z));
+    }
+}
+
+/// The largest sum over a row of M^−½ K M^−½, rad²/s², for the upper bound of K with the largest slope ∂u/∂θ.
+fn frequency_squared(hinges: &Hinges, stiffness: &[f64], mass: &[f64]) -> f64 {
+    let mut rows = vec![0.0; mass.len()];
+    for ((nodes, leverages), stiffness) in hinges.nodes.iter().zip(&hinges.leverages).zip(stiffness)
+    {
+        let scaled: [f64; 4] = core::array::from_fn(|corner| {
+            leverages[corner] * largest_slope() / mass[nodes[corner] as usize].sqrt()
+        });
+        let sum: f64 = scaled.iter().sum();
+        for (node, entry) in nodes.iter().zip(scaled) {
+            rows[*node as usize] += stiffness * entry * sum;
+        }
+    }
+    rows.into_iter().fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests;
