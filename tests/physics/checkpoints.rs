@@ -48,13 +48,16 @@ fn bits(deployment: &Deployment) -> String {
     format!("{deployment:?}")
 }
 
-/// The paper's capsule at n 2: packed until 8 ms, inflow windows, frames, contact with friction.
+/// The paper's capsule at n 2: packed until 8 ms, inflow windows, frames, contact with friction, bending and
+/// creases.
 fn film() -> Scene {
     let mut scene = paper::capsule(2, 0.03);
     scene.solver.model = ModelKind::Film;
     scene.solver.stepping = Stepping::Stable(DEFAULT_CFL);
     scene.release_time = 0.008;
     scene.film.compression = 1.0;
+    scene.film.bending = true;
+    scene.film.creases = Some(Creases { length_scale: 0.02, rest_angle: None });
     scene.contact.friction = 0.2;
     scene.outputs.sample_interval = 1e-3;
     scene.outputs.frames = 4;

@@ -31,7 +31,7 @@ pub use billow_solver::scene::motion::{Motion, Profile};
 pub use billow_solver::scene::plate::Plate;
 pub use billow_solver::scene::timeline::{Phase, Timeline};
 pub use billow_solver::scene::{
-    DEFAULT_CFL, Film, GasSupply, HeatTransfer, IntegratorKind, ModelKind, Scene, Species,
+    Creases, DEFAULT_CFL, Film, GasSupply, HeatTransfer, IntegratorKind, ModelKind, Scene, Species,
     Stepping, Support, SupportLocation,
 };
 pub use billow_solver::system::{FilmState, FilmSystem, PressureLoad, Workspace};

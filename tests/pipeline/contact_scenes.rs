@@ -6,7 +6,7 @@ use billow_solver::scene::Film;
 use billow_study::store::history_file;
 use serde_json::{Value, json};
 
-use crate::solve::{done, number, scene_folder, solve, solved};
+use crate::solve::{done, number, refused, scene_folder, solve, solved};
 use crate::support::{paper_design, stderr};
 
 /// The paper's capsule on a coarse mesh for 20 ms, with changed keys.
@@ -43,6 +43,24 @@ fn sheet(height: f64) -> String {
 
 /// Smallest stowed gap of the paper's capsule at 16 subdivisions, m.
 const REFERENCE_GAP: f64 = 0.791_899_699e-3;
+
+#[test]
+fn creases_need_bending_and_a_length_and_change_the_motion() {
+    let with = |film: &Value, creases: &Value| capsule(&json!({"film": film, "creases": creases}));
+    let (stiff, length) = (json!({"compression": 1}), json!({"length_scale": "5 mm"}));
+    refused(&with(&stiff, &length), &[], &["film.bending = false", "allowed: true"]);
+    let bending = json!({"compression": 1, "bending": true});
+    let angle = json!({"rest_angle": "90 deg"});
+    refused(&with(&bending, &angle), &[], &["creases.length_scale: missing", "give it"]);
+    let volume =
+        |film: &Value, creases: &Value| number(&solved(&with(film, creases), &[]), "/volume");
+    let volumes = [(&stiff, &json!({})), (&bending, &json!({})), (&bending, &length)]
+        .map(|(f, c)| volume(f, c));
+    assert!(
+        volumes[0].to_bits() != volumes[1].to_bits()
+            && volumes[1].to_bits() != volumes[2].to_bits()
+    );
+}
 
 #[test]
 fn a_folded_capsule_reports_its_contact() {

@@ -4,7 +4,8 @@
 //! K_ij = 4 A D/(h_i h_j) ((1−ν)(n_i·n_j)² + ν)      C = K⁻¹      Ĉ = Σ_T C = L D Lᵀ
 //! ```
 //!
-//! The moment of an edge that is no hinge is zero: its row is left out. A rigid element has no compliance. Hinges of
+//! A crease of length l and stiffness k for each metre adds 1/(k l) to its diagonal. The moment of an edge that is no
+//! hinge is zero: its row is left out. A rigid element has no compliance. Hinges of
 //! different facets are not coupled. Facets with the same connections are solved eight at a time, one a lane.
 
 #![allow(clippy::inline_always, reason = "a kernel must be inlined into its instruction set")]
@@ -56,14 +57,15 @@ struct Group<const W: usize> {
 type Rows = Vec<BTreeMap<u32, f64>>;
 
 impl Compliance {
-    /// Factorises Ĉ. Also returns for each hinge an upper bound of Π over ½ (u − ū)², N m.
+    /// Factorises Ĉ; `crease_stiffness`: N m/rad for each metre. Also returns for each hinge an upper bound of Π over ½ (u − ū)², N m.
     pub(super) fn factorised(
         model: &FilmModel,
         shell: &Shell,
         hinges: &Hinges,
         rigid: &[bool],
+        crease_stiffness: f64,
     ) -> (Self, Vec<f64>) {
-        let (matrix, bounds) = assembled(model, hinges, rigid);
+        let (matrix, bounds) = assembled(model, hinges, rigid, crease_stiffness);
         let middles = middles(hinges, shell);
         // Sets of hinges by their connections; hinges of a set are numbered in the order of its elements.
         let mut alike: BTreeMap<Vec<Vec<u32>>, Vec<Vec<u32>>> = BTreeMap::new();
@@ -186,7 +188,12 @@ impl<const W: usize> Group<W> {
 }
 
 /// Ĉ by rows, and the upper bound of Π over ½ (u − ū)² at each hinge.
-fn assembled(model: &FilmModel, hinges: &Hinges, rigid: &[bool]) -> (Rows, Vec<f64>) {
+fn assembled(
+    model: &FilmModel,
+    hinges: &Hinges,
+    rigid: &[bool],
+    crease_stiffness: f64,
+) -> (Rows, Vec<f64>) {
     let mut of_element: Vec<Vec<(usize, u32)>> = vec![Vec::new(); model.elements()];
     for (hinge, sides) in (0_u32..).zip(&hinges.sides) {
         for (element, corner) in sides {
@@ -195,6 +202,12 @@ fn assembled(model: &FilmModel, hinges: &Hinges, rigid: &[bool]) -> (Rows, Vec<f
     }
     let mut matrix: Rows = vec![BTreeMap::new(); hinges.len()];
     let mut bounds = vec![0.0; hinges.len()];
+    // A crease turns by itself too, and the film beside it no more than all of its turn.
+    for hinge in hinges.first_crease..hinges.len() {
+        let row = u32::try_from(hinge).expect("under 2^32");
+        matrix[hinge].insert(row, 1.0 / (crease_stiffness * hinges.lengths[hinge]));
+        bounds[hinge] = crease_stiffness * hinges.lengths[hinge];
+    }
     for (element, edges) in of_element.iter().enumerate().filter(|(element, _)| !rigid[*element]) {
         let stiffness = element_stiffness(model, element);
         let compliance = stiffness.try_inverse().expect("an element with an area");
@@ -202,7 +215,9 @@ fn assembled(model: &FilmModel, hinges: &Hinges, rigid: &[bool]) -> (Rows, Vec<f
             // Both elements may take half of the turn; beside a rigid one, the other takes all of it.
             let alone = hinges.sides[*hinge as usize].iter().any(|(element, _)| rigid[*element]);
             let share = if alone { 1.0 } else { 0.5 };
-            bounds[*hinge as usize] += share * share * stiffness.row(*corner).abs().sum();
+            if (*hinge as usize) < hinges.first_crease {
+                bounds[*hinge as usize] += share * share * stiffness.row(*corner).abs().sum();
+            }
             for (other, column) in edges {
                 let entry = matrix[*hinge as usize].entry(*column).or_insert(0.0);
                 *entry += compliance[(*corner, *other)];

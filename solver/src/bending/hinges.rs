@@ -9,7 +9,7 @@
 //!                  α1 = p·d/l²   α2 = q·d/l²    ∂u/∂θ = 1 + u²/4
 //! ```
 //!
-//! Beyond [`MAX_SMOOTH_TURN`] u goes on with the slope that it has there.
+//! Beyond [`MAX_SMOOTH_TURN`] u goes on with the slope that it has there. A crease has u = θ.
 
 #![allow(clippy::inline_always, reason = "inside the loop over hinges")]
 
@@ -24,6 +24,7 @@ use crate::mechanics::film_model::FilmModel;
 use crate::platform::simd::{
     Columns, Corners, InstructionSet, Lanes, NodeSum, Vectors, WIDTH, Wide, dispatch_wide,
 };
+use crate::scene::Creases;
 
 /// θ up to which u = 2 tan(θ/2), rad. Chosen: the mesh of the capsule at n 8 reaches the plastic moment of its film
 /// (1.1e-2 N) near it, and the stiffness of a hinge stays below 16 times that of flat film.
@@ -64,14 +65,24 @@ pub struct Hinges {
     pub sides: Vec<[(usize, usize); 2]>,
     /// Largest |∂θ/∂x| of the nodes s, a, t, b in the reference, 1/m.
     pub leverages: Vec<[f64; 4]>,
+    /// Length of the edge in the reference, m.
+    pub lengths: Vec<f64>,
+    /// The first crease: they come last.
+    pub first_crease: usize,
     corners: Corners,
     /// ū; zero past the last hinge.
     rest: Vec<f64>,
 }
 
 impl Hinges {
-    /// The hinges of a shell: inner edges that do not lie on a fold line or between two rigid elements.
-    pub(super) fn new(model: &FilmModel, shell: &Shell, rigid: &[bool]) -> Self {
+    /// The hinges of a shell: inner edges that do not lie between two rigid elements. Those on a fold line are creases,
+    /// or turn freely and are none.
+    pub(super) fn new(
+        model: &FilmModel,
+        shell: &Shell,
+        rigid: &[bool],
+        creases: Option<Creases>,
+    ) -> Self {
         let mut directed = BTreeMap::new();
         for (element, nodes) in model.triangles.iter().enumerate() {
             for corner in 0..3 {
@@ -79,33 +90,51 @@ impl Hinges {
                     .insert([nodes[(corner + 1) % 3], nodes[(corner + 2) % 3]], (element, corner));
             }
         }
-        let (mut nodes, mut sides, mut leverages, mut flat) =
-            (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         // In the order of the elements, so that facets with the same mesh have the same order.
         let all =
             (0..model.elements()).flat_map(|element| [0, 1, 2].map(|corner| (element, corner)));
+        let (mut film, mut folded) = (Vec::new(), Vec::new());
         for first in all {
-            let nodes_of = model.triangles[first.0];
-            let (t, s) = (nodes_of[(first.1 + 1) % 3], nodes_of[(first.1 + 2) % 3]);
+            let corners = model.triangles[first.0];
+            let (t, s) = (corners[(first.1 + 1) % 3], corners[(first.1 + 2) % 3]);
             let Some(&second) = directed.get(&[s, t]) else { continue };
-            let folded = shell.folds.binary_search(&[s.min(t), s.max(t)]).is_ok();
-            if second.0 < first.0 || folded || (rigid[first.0] && rigid[second.0]) {
+            if second.0 < first.0 || (rigid[first.0] && rigid[second.0]) {
                 continue;
             }
-            let opposite = |(element, corner): (usize, usize)| model.triangles[element][corner];
-            nodes.push([s, opposite(first), t, opposite(second)]);
-            sides.push([first, second]);
-            leverages.push(leverage(shell, [first, second]));
-            flat.push(in_one_plane(shell, [first, second]));
+            let fold = shell.folds.binary_search(&[s.min(t), s.max(t)]).is_ok();
+            if fold { folded.push([first, second]) } else { film.push([first, second]) }
         }
+        let first_crease = film.len();
+        if creases.is_some() {
+            film.extend(folded);
+        }
+        let sides = film;
+        let nodes_of = |[first, second]: &[(usize, usize); 2]| {
+            let of = |(element, corner): (usize, usize), step: usize| {
+                model.triangles[element][(corner + step) % 3]
+            };
+            [of(*first, 2), of(*first, 0), of(*first, 1), of(*second, 0)]
+        };
+        let nodes: Vec<[u32; 4]> = sides.iter().map(nodes_of).collect();
+        let leverages = sides.iter().map(|sides| leverage(shell, *sides)).collect();
+        let length = |[first, _]: &[(usize, usize); 2]| {
+            let [_, t, s] = reference(shell, *first);
+            (t - s).norm()
+        };
+        let lengths = sides.iter().map(length).collect();
         let corners = Corners::new(&nodes, model.nodes());
         let rest = vec![0.0; corners.blocks() * WIDTH];
-        let mut hinges = Self { nodes, sides, leverages, corners, rest };
+        let mut hinges = Self { nodes, sides, leverages, lengths, first_crease, corners, rest };
         let (mut blocks, mut turns) = (Vec::new(), Vec::new());
         let start = Field::of(&shell.positions);
         hinges.measure(InstructionSet::Scalar, &start, &mut blocks, &mut turns);
-        for (hinge, flat) in flat.into_iter().enumerate() {
-            hinges.rest[hinge] = if flat { 0.0 } else { turns[hinge] };
+        for (hinge, turn) in turns.into_iter().take(hinges.len()).enumerate() {
+            let flat = in_one_plane(shell, hinges.sides[hinge]);
+            hinges.rest[hinge] = match creases.filter(|_| hinge >= first_crease) {
+                Some(Creases { rest_angle: Some(angle), .. }) => angle.copysign(turn),
+                None if flat => 0.0,
+                _ => turn,
+            };
         }
         hinges
     }
@@ -131,7 +160,8 @@ impl Hinges {
         blocks.resize(self.corners.blocks(), HingeBlock::default());
         turns.resize(self.rest.len(), 0.0);
         let largest = largest_smooth();
-        measure_hinges(set, &self.corners, positions, largest, &self.rest, blocks, turns);
+        let limits = (largest, self.first_crease);
+        measure_hinges(set, &self.corners, positions, limits, &self.rest, blocks, turns);
     }
 
     /// Sets `sums` to the forces (N) of moments (N m) at hinges of these shapes.
@@ -171,13 +201,7 @@ impl Hinges {
         let nodes: Vec<[u32; 4]> =
             (0..count).step_by(4).map(|k| [k, k + 1, k + 2, k + 3]).collect();
         let corners = Corners::new(&nodes, count as usize);
-        let alone = Self {
-            corners,
-            nodes,
-            sides: Vec::new(),
-            leverages: Vec::new(),
-            rest: self.rest.clone(),
-        };
+        let alone = Self { nodes, corners, ..self.clone() };
         let at = |node: &u32| positions.get(*node as usize);
         let corners: Vec<Vector3<f64>> = self.nodes.iter().flatten().map(at).collect();
         let step = |hinge: usize| DIFFERENCE * (corners[4 * hinge + 2] - corners[4 * hinge]).norm();
@@ -243,7 +267,7 @@ fn plain<L: Wide>(vectors: &Vectors<L>) -> Vectors {
 fn measure_kernel<L: Wide>(
     corners: &Corners,
     positions: &Field,
-    largest: f64,
+    (largest, first_crease): (f64, usize),
     rest: &[f64],
     blocks: &mut [HingeBlock],
     turns: &mut [f64],
@@ -251,7 +275,6 @@ fn measure_kernel<L: Wide>(
     let columns = Columns::new(corners, [&positions.x, &positions.y, &positions.z]);
     // A lane without a hinge has no area: its gradient is zero.
     let tiny = L::splat(f64::MIN_POSITIVE);
-    let largest_slope = L::splat(1.0 + 0.25 * largest * largest);
     for block in 0..corners.blocks() {
         let first = block * WIDTH;
         let [s, a, t, b] = columns.corners::<L>(block, 0);
@@ -266,16 +289,19 @@ fn measure_kernel<L: Wide>(
         let mut turn = (sine + sine).over((size + cosine).max(tiny));
         let mut slope = L::splat(1.0) + turn * turn * 0.25;
         let beyond = size * MIN_COSINE - cosine;
-        if beyond.lanes().largest() > 0.0 {
-            let (sine, cosine, beyond_lanes) = (sine.lanes(), cosine.lanes(), beyond.lanes());
-            let mut lanes = turn.lanes();
+        if beyond.lanes().largest() > 0.0 || first + WIDTH > first_crease {
+            let (sine, cosine, beyond) = (sine.lanes(), cosine.lanes(), beyond.lanes());
+            let (mut lanes, mut slopes) = (turn.lanes(), slope.lanes());
             for lane in 0..WIDTH {
-                if beyond_lanes.0[lane] > 0.0 {
+                if first + lane >= first_crease {
+                    lanes.0[lane] = libm::atan2(sine.0[lane], cosine.0[lane]);
+                    slopes.0[lane] = 1.0;
+                } else if beyond.0[lane] > 0.0 {
                     lanes.0[lane] = folded_turn(largest, sine.0[lane], cosine.0[lane]);
+                    slopes.0[lane] = 1.0 + 0.25 * largest * largest;
                 }
             }
-            turn = L::load(&lanes.0, 0);
-            slope = beyond.if_positive(largest_slope, slope);
+            (turn, slope) = (L::load(&lanes.0, 0), L::load(&slopes.0, 0));
         }
         (turn - L::load(rest, first)).store(turns, first);
         let out = &mut blocks[block];
@@ -290,7 +316,7 @@ dispatch_wide! {
     fn measure_hinges / measure_kernel(
         corners: &Corners,
         positions: &Field,
-        largest: f64,
+        limits: (f64, usize),
         rest: &[f64],
         blocks: &mut [HingeBlock],
         turns: &mut [f64],

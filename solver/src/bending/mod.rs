@@ -19,8 +19,14 @@
 //! discrete shape operators on general meshes", 2006) and, with moments as unknowns, that of Hellan, Herrmann and
 //! Johnson. It converges on every mesh tried (`docs/theory/bending.md`).
 //!
-//! The moment is zero on free edges and on fold lines, which turn freely. An element that is held at all its nodes
-//! does not bend: film beside it is clamped. Beyond [`hinges::MAX_SMOOTH_TURN`] the turn grows in proportion to θ.
+//! The moment is zero on free edges, and on fold lines that turn freely. A crease is a fold line with stiffness:
+//!
+//! ```text
+//! t_T + t_T' + m/(k l) = θ − θ̄        k = D/L*, l its length, θ̄ its rest angle
+//! ```
+//!
+//! An element that is held at all its nodes does not bend: film beside it is clamped. Beyond
+//! [`hinges::MAX_SMOOTH_TURN`] the turn grows in proportion to θ.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -73,13 +79,15 @@ impl Bending {
         instruction_set: InstructionSet,
         held: impl Fn(u32) -> bool,
     ) -> Vec<Arc<dyn EnergyTerm>> {
-        let new =
-            || -> Arc<dyn EnergyTerm> { Arc::new(Self::new(model, shell, instruction_set, held)) };
+        let new = || -> Arc<dyn EnergyTerm> {
+            Arc::new(Self::new(film, model, shell, instruction_set, held))
+        };
         film.bending.then(new).into_iter().collect()
     }
 
     /// The bending of the film of a shell. `held`: whether supports hold a node in all directions.
     pub fn new(
+        film: &Film,
         model: &FilmModel,
         shell: &Shell,
         instruction_set: InstructionSet,
@@ -87,9 +95,12 @@ impl Bending {
     ) -> Self {
         let rigid: Vec<bool> =
             model.triangles.iter().map(|nodes| nodes.iter().all(|node| held(*node))).collect();
-        let hinges = Hinges::new(model, shell, &rigid);
+        let hinges = Hinges::new(model, shell, &rigid, film.creases);
+        let crease_stiffness =
+            film.creases.map_or(0.0, |creases| film.bending_stiffness() / creases.length_scale);
         let mut scratch = Scratch::default();
-        let (compliance, stiffness) = Compliance::factorised(model, shell, &hinges, &rigid);
+        let (compliance, stiffness) =
+            Compliance::factorised(model, shell, &hinges, &rigid, crease_stiffness);
         scratch.sums = vec![NodeSum::default(); model.nodes()];
         let frequency_squared = frequency_squared(&hinges, &stiffness, &model.mass);
         let scratch = Mutex::new(scratch);

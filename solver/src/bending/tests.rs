@@ -2,14 +2,14 @@ use nalgebra::{DMatrix, Vector2, Vector3};
 
 use super::*;
 use crate::geometry::shapes::{grid, joined, moved, pseudo_random};
-use crate::scene::Film;
+use crate::scene::{Creases, Film};
 
 /// A film thick enough that its bending shows.
 const FILM: Film = Film { compression: 1.0, thickness: 1e-3, ..Film::PAPER_ELASTIC };
 
 fn bending(shell: &Shell, held: impl Fn(u32) -> bool) -> Bending {
     let model = FilmModel::of_shell(&FILM, shell).expect("a film");
-    Bending::new(&model, shell, InstructionSet::detect(), held)
+    Bending::new(&FILM, &model, shell, InstructionSet::detect(), held)
 }
 
 /// A sheet of irregular elements, and positions in which some of its edges are folded beyond the smooth turns.
@@ -74,7 +74,7 @@ fn every_instruction_set_gives_the_same_bits() {
     let (shell, positions) = crumpled();
     let model = FilmModel::of_shell(&FILM, &shell).expect("a film");
     let all = InstructionSet::ALL.into_iter().filter(|set| set.available());
-    let of = |set| forces(&Bending::new(&model, &shell, set, |_| false), &positions);
+    let of = |set| forces(&Bending::new(&FILM, &model, &shell, set, |_| false), &positions);
     let found: Vec<Field> = all.map(of).collect();
     assert!(found.windows(2).all(|pair| pair[0] == pair[1]));
 }
@@ -194,5 +194,41 @@ fn the_patches_bound_the_stiffness_of_flat_film_and_the_frequency_that_of_any() 
         });
         let largest = scaled.symmetric_eigenvalues().max();
         assert!(largest <= allowed && largest > 1e-3 * allowed, "{largest} {allowed}");
+    }
+}
+
+/// Two triangles with a crease between them: crease and film yield in series.
+#[test]
+fn a_crease_is_a_hinge_about_its_rest_angle() {
+    let fold = |angle: f64| {
+        let (sin, cos) = libm::sincos(angle);
+        let last = [-0.2 * cos, 0.1, 0.2 * sin];
+        [[0.0, 0.0, 0.0], [0.0, 0.3, 0.0], [0.2, 0.1, 0.0], last].map(Vector3::from).to_vec()
+    };
+    let start = Shell::relaxed(fold(1.2), vec![[0, 2, 1], [0, 1, 3]]);
+    let shell = Shell { folds: vec![[0, 1]], ..start };
+    // Moment over turn; the last node is 0.2 m from the crease.
+    let stiffness = |length_scale: f64, rest_angle: Option<f64>, angle: f64| {
+        let film = Film { creases: Some(Creases { length_scale, rest_angle }), ..FILM };
+        let model = FilmModel::of_shell(&film, &shell).expect("a film");
+        let bending = Bending::new(&film, &model, &shell, InstructionSet::detect(), |_| false);
+        let moment = |angle: f64| forces(&bending, &Field::of(&fold(angle))).get(3).norm() * 0.2;
+        let rest = rest_angle.unwrap_or(1.2);
+        assert!(moment(rest) < 1e-12 * moment(rest + 1.0));
+        moment(angle) / (angle - rest).abs()
+    };
+    for rest_angle in [None, Some(0.5)] {
+        for angle in [0.1, 0.8, 2.5, 3.0] {
+            let of_crease = |length_scale: f64| FILM.bending_stiffness() / length_scale * 0.3;
+            let of_film = stiffness(1e-9, rest_angle, angle);
+            for length_scale in [0.02, 0.5, 1e3] {
+                let both = 1.0 / (1.0 / of_film + 1.0 / of_crease(length_scale));
+                let found = stiffness(length_scale, rest_angle, angle);
+                assert!(
+                    (found / both - 1.0).abs() < 1e-6,
+                    "{length_scale} {angle}: {found} {both}"
+                );
+            }
+        }
     }
 }

@@ -52,6 +52,9 @@ pub struct Film {
     /// Whether the film has bending stiffness D = E t³/(12(1−ν²)); fold lines are free to turn. Absent where not.
     #[serde(default, skip_serializing_if = "core::ops::Not::not")]
     pub bending: bool,
+    /// Stiffness of the fold lines of film with bending; `None` where they turn freely.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub creases: Option<Creases>,
     /// Numerical damping ratio ζ: of the highest mode of an element while the film carries tension. Not
     /// a property of the film; it stands here because the constants of the elements hold it.
     #[serde(rename = "viscosity")]
@@ -62,6 +65,18 @@ pub struct Film {
     pub loss_factor: f64,
     /// Frequency of the largest loss factor, Hz.
     pub loss_frequency: f64,
+}
+
+/// Fold lines as elastic hinges with the stiffness D/L* (N m/rad for each metre).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Creases {
+    /// L*, m.
+    pub length_scale: f64,
+    /// Angle between the two elements at a fold line at rest, rad, in the direction in which it is folded at the start: 0
+    /// flat, π closed. `None` for the angle at the start.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rest_angle: Option<f64>,
 }
 
 impl Film {

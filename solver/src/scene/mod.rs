@@ -16,6 +16,7 @@ pub mod timeline;
 mod validate;
 
 pub use capsule::{
-    Contact, DEFAULT_CFL, Film, GasSupply, HeatTransfer, InflowWindow, IntegratorKind, MAX_SAMPLES,
-    ModelKind, Outputs, Scene, Solver, Species, Stepping, Support, SupportLocation, Thresholds,
+    Contact, Creases, DEFAULT_CFL, Film, GasSupply, HeatTransfer, InflowWindow, IntegratorKind,
+    MAX_SAMPLES, ModelKind, Outputs, Scene, Solver, Species, Stepping, Support, SupportLocation,
+    Thresholds,
 };

@@ -49,6 +49,7 @@ impl Film {
         thickness: 25.4e-6,
         compression: 0.0,
         bending: false,
+        creases: None,
         numerical_damping: NUMERICAL_DAMPING,
         temperature: TEMPERATURE,
         loss_factor: LOSS_FACTOR,

@@ -40,6 +40,9 @@ impl Scene {
         positive("film.thickness", film.thickness, "m")?;
         let fraction = |value: f64| (0.0..=1.0).contains(&value);
         number("film.compression", film.compression, fraction, "from 0 to 1")?;
+        if let Some(creases) = film.creases {
+            positive("creases.length_scale", creases.length_scale, "m")?;
+        }
         not_negative("film.numerical_damping", film.numerical_damping, "a damping ratio")?;
         not_negative("film.loss_factor", film.loss_factor, "a loss factor")?;
         positive("film.loss_frequency", film.loss_frequency, "Hz")?;

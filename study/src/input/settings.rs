@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use billow_solver::geometry::fold::{Caps, FoldDesign};
 use billow_solver::scene::{
-    Contact, Film, GasSupply, HeatTransfer, InflowWindow, IntegratorKind, Species, Support,
+    Contact, Creases, Film, GasSupply, HeatTransfer, InflowWindow, IntegratorKind, Species, Support,
 };
 
 use crate::input::json::Json;
@@ -221,11 +221,27 @@ impl Settings {
             thickness: self.needed("film.thickness", source)?,
             compression: self.needed("film.compression", source)?,
             bending: self.flag("film.bending").unwrap_or(false),
+            creases: self.creases(source)?,
             numerical_damping: self.needed("film.numerical_damping", source)?,
             temperature: self.needed("film.temperature", source)?,
             loss_factor: self.needed("film.loss_factor", source)?,
             loss_frequency: self.needed("film.loss_frequency", source)?,
         })
+    }
+
+    /// The stiffness of the fold lines; `None` where they turn freely.
+    fn creases(&self, source: &Source) -> Result<Option<Creases>, InputError> {
+        let rest_angle = self.number("creases.rest_angle");
+        let length_scale = match rest_angle {
+            Some(_) => Some(self.needed("creases.length_scale", source)?),
+            None => self.number("creases.length_scale"),
+        };
+        if length_scale.is_some() && self.flag("film.bending") != Some(true) {
+            let (problem, allowed) =
+                ("is false, but the file has creases", "true, for film with creases");
+            return Err(source.error("film.bending", false, problem, allowed));
+        }
+        Ok(length_scale.map(|length_scale| Creases { length_scale, rest_angle }))
     }
 
     /// The gas with this mass at the start and these inflow windows: in order of time, those without inflow before the

@@ -147,6 +147,7 @@ mod tests {
         "design": {"fit": "height", "N": 6, "M": 3, "bottom_radius": 0.5, "height": 1, "alpha1_over_phi": 0.8},
         "gas": {"mass_flow_rate": 0.002, "residual_gas_mass": 1e-4, "ambient_pressure": 10,
                 "species": {"gas_constant": 300, "cp": 1000}},
+        "film": {"bending": true},
         "strategies": {"filled": {"preinflation_mass": 1e-4}, "direct": {"preinflation_mass": 2e-4}},
         "strategy": "filled",
         "solver": {"end_time": 0.3, "model": "film"},
@@ -172,7 +173,11 @@ mod tests {
                 continue;
             }
             let stepping = key.path.starts_with("solver.stepping.");
-            let before = base(if stepping { "piston" } else { "film" });
+            let mut before = base(if stepping { "piston" } else { "film" });
+            if key.path == "creases.rest_angle" {
+                let length = KEYS.iter().position(|key| key.path == "creases.length_scale");
+                before.set(length.unwrap(), Value::Number(0.02));
+            }
             let mut after = before.clone();
             let other = match (key.kind, before.at(index)) {
                 (_, Value::Integer(number)) => Value::Integer(number + 1),
@@ -182,6 +187,7 @@ mod tests {
                         words.iter().filter(|word| Value::Text(word.name.to_owned()) != *given);
                     Value::Text(others.next().unwrap().name.to_owned())
                 }
+                (_, Value::Bool(flag)) => Value::Bool(!flag),
                 (_, Value::Text(_)) => Value::Text("direct".to_owned()),
                 _ => key.read(&parse(key.example, "a").unwrap()).unwrap(),
             };

@@ -11,6 +11,7 @@ use crate::input::units::Dimension;
 pub(super) const SCENE_SECTIONS: &[(&str, &str)] = &[
     ("design", "The fold design of a capsule: this, or mesh."),
     ("film", "The film."),
+    ("creases", "Stiffness of the fold lines of a capsule's film with bending."),
     (
         "gas",
         "The pressure inside: a fixed `pressure`, or a gas with inflow windows, heat and leak. \

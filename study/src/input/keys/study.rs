@@ -22,6 +22,10 @@ use crate::input::units::Dimension;
 pub const SECTIONS: &[(&str, &str)] = &[
     ("design", "The fold design: a six-fold-line pattern of N panels and M storeys on a cone."),
     ("film", "The film the capsule is made of."),
+    (
+        "creases",
+        "Stiffness of the fold lines of film with bending. Without this section they turn freely.",
+    ),
     ("gas", "The gas that deploys the capsule, and its exchange with the surroundings."),
     ("gas.species", "A gas by its constants: gas_constant and cp, both."),
     ("contact", "Contact of film with film."),
@@ -156,6 +160,11 @@ pub static KEYS: &[Key] = &[
     key("film.numerical_damping", from(Dimension::Number, 0.0, 1.0), Number(NUMERICAL_DAMPING),
         "1e-4", "Numerical damping ratio of an element's highest mode while it carries tension; no film property."),
     key("film.temperature", KELVIN, Number(293.0), "\"293 K\"", "Film temperature, constant."),
+
+    key("creases.length_scale", likely(above(Dimension::Length, 0.0, 100.0), 1e-3, 1.0), Absent("fold lines turn freely"),
+        "\"20 mm\"", "Length of flat film that bends as easily as the fold line, L*. Thin polymer: assumed 5 to 100 mm."),
+    key("creases.rest_angle", likely(from(Dimension::Angle, 0.0, core::f64::consts::PI), 0.1, core::f64::consts::PI), Absent("the angle in which it is packed"), "\"90 deg\"",
+        "Fold angle at rest, in the packed direction: 0 is flat. It needs creases.length_scale."),
 
     key("gas.species", KeyKind::Choice(&words(&SPECIES)), Word("nitrogen"), "\"nitrogen\"",
         "The gas: a name, or an object of gas_constant and cp.")
