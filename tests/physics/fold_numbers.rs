@@ -133,6 +133,8 @@ fn stowed_at_forty_millimetres() {
     prints(mass, "0.13595");
     for (subdivisions, elements) in [(5, 1200), (8, 3072), (16, 12_288)] {
         let mesh = Mesh::new(&pattern, subdivisions, Shape::Stowed(0.04)).expect("foldable");
+        // Rings, panel sides and diagonals of the paper's capsule, N 6 and M 3; caps have no fold lines.
+        assert_eq!(u32::try_from(mesh.folds().len()), Ok((4 + 3 + 3) * 6 * subdivisions));
         assert_eq!(mesh.triangles.len(), elements);
         prints(mesh.volume(), "0.01512");
     }
