@@ -14,6 +14,7 @@ use billow_solver::models::run::{self, Model};
 use billow_solver::output::history::COLUMNS;
 use billow_solver::output::outcome::{Deployment, Stop};
 use billow_solver::platform::simd::InstructionSet;
+use billow_solver::scene::Creases;
 use billow_solver::scene::film_scene::{FilmOutputs, FilmSolver};
 use billow_solver::scene::plate::Plate;
 use nalgebra::Matrix3;
@@ -137,6 +138,22 @@ fn falling_sheet() -> String {
     end_state_at(&scene, 5e-3, &Phase::default())
 }
 
+/// A sheet that slides on a slanted plane along one side.
+fn on_a_slanted_plane() -> String {
+    let shell = sheet(5, 4, 0.3, 0.2);
+    let side = (0_u32..).zip(&shell.positions).filter(|(_, x)| x.y <= 0.0);
+    let normal = Vector3::new(1.0, 2.0, 0.5).normalize();
+    let nodes = side.map(|(node, _)| node).collect();
+    let plane =
+        FilmSupport { name: "plane".to_owned(), nodes, hold: Hold::Plane(normal), motion: None };
+    let scene = FilmScene {
+        supports: vec![plane],
+        gravity: Vector3::new(0.0, -3.0, -9.806_65),
+        ..free_film(shell, Film::PAPER)
+    };
+    end_state_at(&scene, 5e-3, &Phase::default())
+}
+
 /// A tube whose upper end is moved and rotated while the lower one is held.
 fn turned_tube() -> String {
     let (around, along) = (8, 4);
@@ -194,6 +211,14 @@ fn with_friction() -> String {
     short_capsule(0.02, |scene| {
         scene.film.compression = 1.0;
         scene.contact.friction = 0.2;
+    })
+}
+
+/// Film with bending and creases.
+fn with_bending() -> String {
+    short_capsule(0.02, |scene| {
+        let creases = Some(Creases { length_scale: 0.02, rest_angle: None });
+        scene.film = Film { compression: 1.0, bending: true, creases, ..scene.film };
     })
 }
 
@@ -282,9 +307,11 @@ fn the_physics_changes_only_with_its_version() {
         "film, capsule of two subdivisions with contact for 300 ms": quiescent_capsule(),
         "film, sphere with gas, heat and leak in air": sphere(),
         "film, damped sheet under gravity, compression 0.3": falling_sheet(),
+        "film, sheet on a slanted plane": on_a_slanted_plane(),
         "film, tube with a moving support": turned_tube(),
         "film, capsule under a lid": under_a_lid(),
         "film, capsule with friction, compression 1": with_friction(),
+        "film, capsule with bending and creases": with_bending(),
         "film, capsule with adhesion": with_adhesion(),
         "film, tube closed by faces, with gas": closed_by_faces(),
         "film, sheet between moving plates": between_moving_plates(),

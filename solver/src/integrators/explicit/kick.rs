@@ -17,8 +17,8 @@ use crate::platform::fault_injection::Term;
 use crate::system::{FilmState, FilmSystem, bind};
 
 impl Explicit {
-    /// Kicks the velocities over `kick` (s), by the further energies over `term_kick` (s), before a drift of `length` (s) that ends at the time `end`
-    /// (s). Adds the works of mass damping and of moving supports.
+    /// Kicks the velocities over `kick` (s), by the further energies over `term_kick` (s), before a drift of `length`
+    /// (s) that ends at the time `end` (s). Adds the works of mass damping and of moving supports.
     pub(super) fn kick(
         &mut self,
         system: &FilmSystem,
@@ -65,11 +65,13 @@ impl Explicit {
         let (forces, velocities) = (&self.workspace.forces, &self.motion.velocities);
         let overpressure = system.overpressure(state);
         let change = |node: usize| {
-            let mut impulse = system.node_force(forces, overpressure, node) * gain;
-            if !system.energy_terms.is_empty() {
-                impulse += forces.terms.get(node) * (term_gain - gain);
+            let force = system.node_force(forces, overpressure, node);
+            let change =
+                velocities.get(node) * (keep - 1.0) + force * (gain * model.inverse_mass[node]);
+            if system.energy_terms.is_empty() {
+                return change;
             }
-            velocities.get(node) * (keep - 1.0) + impulse * model.inverse_mass[node]
+            change + forces.terms.get(node) * ((term_gain - gain) * model.inverse_mass[node])
         };
         let kick_parameters = KickParameters {
             overpressure,

@@ -162,8 +162,8 @@ impl Explicit {
                 self.wait(system, state, interval.length, phase.inflow);
                 state.time = end;
             } else {
-                let left = interval.count - interval.index + 1;
-                self.step(system, state, (interval.length, left), end, phase.inflow, budget)?;
+                let remaining = interval.count - interval.index + 1;
+                self.step(system, state, (interval.length, remaining), end, phase.inflow, budget)?;
                 state.time = end;
                 budget.audit.record(system, state)?;
             }
@@ -226,12 +226,13 @@ impl Explicit {
         self.motion.accounting.commit_gas(system, state, gas, volume);
     }
 
-    /// A step of `length` (s) that ends at the time `end` (s). `left`: the planned steps of this length, with this one.
+    /// A step of `length` (s) that ends at the time `end` (s). `remaining`: the planned
+    /// steps of this length, with this one.
     fn step(
         &mut self,
         system: &FilmSystem,
         state: &mut FilmState,
-        (length, left): (f64, u64),
+        (length, remaining): (f64, u64),
         end: f64,
         inflow: Inflow,
         budget: &mut Budget<'_>,
@@ -239,7 +240,7 @@ impl Explicit {
         let stopwatch = &mut *budget.stopwatch;
         stopwatch.begins(Stage::Update);
         let kick = 0.5 * (self.motion.last_step + length);
-        let term_kick = self.motion.terms.step(system, length, left);
+        let term_kick = self.motion.terms.step(system, length, remaining);
         if term_kick != 0.0 {
             system.term_forces(&state.positions, &mut self.workspace.forces);
         }

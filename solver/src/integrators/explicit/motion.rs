@@ -71,14 +71,14 @@ const MAX_FILM_PHASE: f64 = 0.9 * 2.0 * core::f64::consts::PI;
 
 impl TermClock {
     /// The time (s) that a kick at the start of a step of this length (s) covers, 0 between two kicks, and the clock
-    /// after the step. `left`: the steps of this length that are planned, this one included.
-    pub(super) fn step(&mut self, system: &FilmSystem, length: f64, left: u64) -> f64 {
+    /// after the step. `remaining`: the steps of this length that are planned, with this one.
+    pub(super) fn step(&mut self, system: &FilmSystem, length: f64, remaining: u64) -> f64 {
         if system.energy_terms.is_empty() {
             return 0.0;
         }
         let mut kick = 0.0;
         if self.steps == 0 {
-            self.steps = term_steps(system, length).min(left);
+            self.steps = term_steps(system, length).min(remaining);
             let half = 0.5 * self.steps as f64 * length;
             kick = self.owed + half;
             self.owed = -half;
