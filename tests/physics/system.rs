@@ -5,7 +5,7 @@ use std::sync::Arc;
 use billow_solver::geometry::shapes::{icosphere, pseudo_random};
 use billow_solver::models::film::capsule;
 use billow_solver::scene::paper::{free_film, nitrogen_supply};
-use billow_solver::system::Evaluation;
+use billow_solver::system::{Evaluation, TermStiffness};
 
 use crate::closures;
 use crate::film_rig::{INFLOW, capsule_film, free, pressed_sheets, still};
@@ -156,12 +156,10 @@ fn the_stiffness_is_minus_the_slope_of_the_forces() {
             }
         }
         system.pair_stiffness(at_now, &workspace, &mut add);
-        let patches = system.patches();
-        let mut stiffness: Vec<_> =
-            patches.iter().map(|nodes| DMatrix::zeros(3 * nodes.len(), 3 * nodes.len())).collect();
-        system.patch_stiffness(&positions, &mut stiffness);
+        let mut terms = TermStiffness::new(system);
+        terms.prepare(system, &positions);
         let mut of_terms = Field::zeros(directions.len());
-        system.add_term_products((&positions, &stiffness), &Field::of(&directions), &mut of_terms);
+        terms.add_product(system, &Field::of(&directions), &mut of_terms);
         for (sum, of_terms) in product.iter_mut().zip(of_terms.iter()) {
             *sum += of_terms;
         }

@@ -16,7 +16,7 @@
 use core::f64::consts::PI;
 use std::collections::BTreeMap;
 
-use nalgebra::{SMatrix, Vector3};
+use nalgebra::Vector3;
 
 use crate::geometry::field::Field;
 use crate::geometry::shell::Shell;
@@ -139,6 +139,15 @@ impl Hinges {
         hinges
     }
 
+    /// The same hinges, each with four nodes for itself.
+    pub(super) fn separate(&self) -> Self {
+        let count = u32::try_from(4 * self.len()).expect("under 2^32");
+        let nodes: Vec<[u32; 4]> =
+            (0..count).step_by(4).map(|k| [k, k + 1, k + 2, k + 3]).collect();
+        let corners = Corners::new(&nodes, count as usize);
+        Self { nodes, corners, ..self.clone() }
+    }
+
     /// Number of hinges.
     pub fn len(&self) -> usize {
         self.nodes.len()
@@ -187,41 +196,6 @@ impl Hinges {
             block.gradients.map(|v| Vector3::new(v.x.0[lane], v.y.0[lane], v.z.0[lane]) * slope);
         let t = -(a * block.along[0].0[lane] + b * block.along[1].0[lane]);
         [-(a + b + t), a, t, b]
-    }
-}
-
-/// Step of the differences in [`Hinges::second_gradients`] over the edge. Chosen: between rounding and curvature.
-const DIFFERENCE: f64 = 1e-5;
-
-impl Hinges {
-    /// ∂²u/∂x² of the nodes s, a, t, b of each hinge at these positions (m), 1/m²: central differences of ∂u/∂x.
-    pub(super) fn second_gradients(&self, positions: &Field) -> Vec<SMatrix<f64, 12, 12>> {
-        // Each hinge with nodes for itself, so that one pass moves the same component of all hinges.
-        let count = u32::try_from(4 * self.len()).expect("under 2^32");
-        let nodes: Vec<[u32; 4]> =
-            (0..count).step_by(4).map(|k| [k, k + 1, k + 2, k + 3]).collect();
-        let corners = Corners::new(&nodes, count as usize);
-        let alone = Self { nodes, corners, ..self.clone() };
-        let at = |node: &u32| positions.get(*node as usize);
-        let corners: Vec<Vector3<f64>> = self.nodes.iter().flatten().map(at).collect();
-        let step = |hinge: usize| DIFFERENCE * (corners[4 * hinge + 2] - corners[4 * hinge]).norm();
-        let mut second = vec![SMatrix::<f64, 12, 12>::zeros(); self.len()];
-        let (mut blocks, mut turns) = (Vec::new(), Vec::new());
-        for (row, sign) in (0..12).flat_map(|row| [(row, 1.0), (row, -1.0)]) {
-            let mut moved = corners.clone();
-            for hinge in 0..self.len() {
-                moved[4 * hinge + row / 3][row % 3] += sign * step(hinge);
-            }
-            alone.measure(InstructionSet::detect(), &Field::of(&moved), &mut blocks, &mut turns);
-            for (hinge, second) in second.iter_mut().enumerate() {
-                let gradient = Self::gradient(&blocks, hinge);
-                for column in 0..12 {
-                    second[(row, column)] +=
-                        sign * gradient[column / 3][column % 3] / (2.0 * step(hinge));
-                }
-            }
-        }
-        second.iter().map(|second| 0.5 * (second + second.transpose())).collect()
     }
 }
 

@@ -32,6 +32,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use nalgebra::{DMatrix, SVector, Vector3};
 
+use crate::factorisation::constant::{ConstantFactor, Work};
 use crate::geometry::field::Field;
 use crate::geometry::shell::Shell;
 use crate::mechanics::energy_term::{EnergyTerm, Prepared};
@@ -41,15 +42,16 @@ use crate::scene::Film;
 
 mod compliance;
 pub mod hinges;
+mod second_gradients;
 
-use compliance::{Compliance, Work};
 use hinges::{HingeBlock, Hinges, largest_slope};
 
 /// The bending energy of film. Constant during a run.
 #[derive(Debug)]
 pub struct Bending {
     hinges: Hinges,
-    compliance: Compliance,
+    /// Factor of Ĉ.
+    compliance: ConstantFactor,
     /// Upper bound of the energy over ½ (u − ū)² at each hinge, N m.
     stiffness: Vec<f64>,
     /// Upper bound of ω² of the film's masses, rad²/s².
@@ -99,23 +101,35 @@ impl Bending {
         let crease_stiffness =
             film.creases.map_or(0.0, |creases| film.bending_stiffness() / creases.length_scale);
         let mut scratch = Scratch::default();
-        let (compliance, stiffness) =
-            Compliance::factorised(model, shell, &hinges, &rigid, crease_stiffness);
+        let (matrix, stiffness) = compliance::assembled(model, &hinges, &rigid, crease_stiffness);
+        let compliance = ConstantFactor::new(&matrix, &compliance::middles(&hinges, shell));
         scratch.sums = vec![NodeSum::default(); model.nodes()];
         let frequency_squared = frequency_squared(&hinges, &stiffness, &model.mass);
         let scratch = Mutex::new(scratch);
         Self { hinges, compliance, stiffness, frequency_squared, instruction_set, scratch }
     }
 
-    /// Computes u − ū at these positions (m), and the moments (N m) of the hinges.
-    fn moments(&self, positions: &Field) -> (MutexGuard<'_, Scratch>, Vec<f64>) {
+    /// Computes the shapes of the hinges and u − ū at these positions (m).
+    fn measured(&self, positions: &Field) -> MutexGuard<'_, Scratch> {
         // A panic elsewhere leaves the memory of an evaluation complete: every one fills it again.
         let mut scratch = self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
-        let Scratch { blocks, turns, work, .. } = &mut *scratch;
+        let Scratch { blocks, turns, .. } = &mut *scratch;
         self.hinges.measure(self.instruction_set, positions, blocks, turns);
-        let turns = &turns[..self.hinges.len()];
+        scratch
+    }
+
+    /// The moments (N m) of the hinges at these turns.
+    fn solve(&self, turns: &[f64], work: &mut Work) -> Vec<f64> {
         let mut moments = vec![0.0; turns.len()];
         self.compliance.solve(self.instruction_set, turns, &mut moments, work);
+        moments
+    }
+
+    /// [`Self::measured`], and the moments (N m) of the hinges.
+    fn moments(&self, positions: &Field) -> (MutexGuard<'_, Scratch>, Vec<f64>) {
+        let mut scratch = self.measured(positions);
+        let Scratch { turns, work, .. } = &mut *scratch;
+        let moments = self.solve(&turns[..self.hinges.len()], work);
         (scratch, moments)
     }
 }
@@ -151,7 +165,7 @@ impl EnergyTerm for Bending {
 
     /// K = (∂u/∂x)ᵀ Ĉ⁻¹ ∂u/∂x + Σ m ∂²u/∂x², from the patches.
     fn add_product(&self, stiffness: &Prepared<'_>, displacements: &Field, products: &mut Field) {
-        let (mut scratch, _) = self.moments(stiffness.positions);
+        let mut scratch = self.measured(stiffness.positions);
         let Scratch { blocks, sums, work, .. } = &mut *scratch;
         let mut turns = Vec::with_capacity(self.hinges.len());
         for (hinge, (nodes, patch)) in self.hinges.nodes.iter().zip(stiffness.patches).enumerate() {
@@ -169,8 +183,7 @@ impl EnergyTerm for Bending {
             }
             turns.push(turn);
         }
-        let mut moments = vec![0.0; turns.len()];
-        self.compliance.solve(self.instruction_set, &turns, &mut moments, work);
+        let mut moments = self.solve(&turns, work);
         for moment in &mut moments {
             *moment = -*moment;
         }
@@ -183,6 +196,7 @@ impl EnergyTerm for Bending {
         true
     }
 
+    /// With the masses of the film that it was made for.
     fn frequency_squared(&self, _: &[f64]) -> f64 {
         self.frequency_squared
     }

@@ -7,14 +7,12 @@
 //! Symbols: K tangent stiffness; M lumped mass; ω largest frequency of an element; μ a shift; d and r
 //! displacements and forces along the unknowns.
 
-use nalgebra::{DMatrix, SVector};
-
 use crate::factorisation::conjugate_gradients::conjugate_gradients;
 use crate::factorisation::factor::{Elimination, Factor};
 use crate::factorisation::unknowns::Unknowns;
 use crate::geometry::field::Field;
-use crate::mechanics::forces::tangent::Stiffness;
-use crate::system::FilmSystem;
+use crate::mechanics::forces::tangent::{self, Stiffness};
+use crate::system::{FilmSystem, TermStiffness};
 
 /// Residual of conjugate gradients over the right side, in the norm of P⁻¹. Chosen: Newton's method then converges fast.
 const MAX_RESIDUAL: f64 = 1e-3;
@@ -26,11 +24,10 @@ pub(super) struct Equations {
     elimination: Elimination,
     factor: Factor,
     stiffness: Vec<Stiffness>,
-    patches: Vec<DMatrix<f64>>,
+    terms: TermStiffness,
     faces: Vec<[u32; 3]>,
+    /// μ ω² M along the unknowns.
     shifts: Vec<f64>,
-    /// Positions that the stiffness is of, m; only for further energies.
-    at: Field,
 }
 
 impl Equations {
@@ -38,18 +35,16 @@ impl Equations {
     /// the positions (m).
     pub(super) fn new(film: &FilmSystem, positions: &Field) -> Self {
         let unknowns = Unknowns::new(&film.model, &film.supports);
-        let (faces, patches) = (film.model.faces(), film.patches());
-        let elimination = Elimination::new(&faces, &patches, &unknowns, positions);
-        let zeros = |nodes: &Vec<u32>| DMatrix::zeros(3 * nodes.len(), 3 * nodes.len());
+        let (faces, terms) = (film.model.faces(), TermStiffness::new(film));
+        let elimination = Elimination::new(&faces, &terms.nodes, &unknowns, positions);
         Self {
             unknowns,
             elimination,
             factor: Factor::default(),
             stiffness: Vec::new(),
-            patches: patches.iter().map(zeros).collect(),
+            terms,
             faces,
             shifts: Vec::new(),
-            at: Field::zeros(0),
         }
     }
 
@@ -58,10 +53,7 @@ impl Equations {
         self.stiffness.clear();
         let faces = film.face_stiffness(&[], positions, overpressure);
         self.stiffness.extend(faces.map(|(_, stiffness)| stiffness));
-        if !film.energy_terms.is_empty() {
-            film.patch_stiffness(positions, &mut self.patches);
-            self.at.clone_from(positions);
-        }
+        self.terms.prepare(film, positions);
     }
 
     /// Factorises the stiffness with the shift μ ω² M. `false` if the matrix is not positive definite.
@@ -69,7 +61,8 @@ impl Equations {
         let omega = film.model.largest_frequency();
         let factor = shift * omega * omega;
         self.shifts = self.unknowns.mass.iter().map(|mass| mass * factor).collect();
-        let (set, matrices) = (film.instruction_set, (&self.stiffness[..], &self.patches[..]));
+        let (set, matrices) =
+            (film.instruction_set, (&self.stiffness[..], &self.terms.patches[..]));
         self.elimination.factor(set, matrices, &self.shifts, &mut self.factor)
     }
 
@@ -92,15 +85,8 @@ impl Equations {
         let mut moves = Field::zeros(film.model.nodes());
         self.unknowns.shift(&mut moves, d, 1.0);
         let mut forces = Field::zeros(film.model.nodes());
-        film.add_term_products((&self.at, &self.patches), &moves, &mut forces);
-        for (nodes, stiffness) in self.faces.iter().zip(&self.stiffness) {
-            let u = nodes.map(|node| moves.get(node as usize));
-            let f = stiffness * SVector::<f64, 9>::from_fn(|row, _| u[row / 3][row % 3]);
-            for (corner, node) in nodes.iter().enumerate() {
-                let node = *node as usize;
-                forces.set(node, forces.get(node) + f.fixed_rows::<3>(3 * corner));
-            }
-        }
+        self.terms.add_product(film, &moves, &mut forces);
+        tangent::add_products(&self.faces, &self.stiffness, &moves, &mut forces);
         let mut out: Vec<f64> = self.shifts.iter().zip(d).map(|(shift, d)| shift * d).collect();
         self.unknowns.add(&forces, &mut out);
         out

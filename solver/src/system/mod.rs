@@ -23,6 +23,6 @@ pub use evaluation::Evaluation;
 pub use film_state::FilmState;
 pub(crate) use film_state::bind;
 pub use film_system::{FilmSystem, PressureLoad};
-pub use stiffness::GasStiffness;
+pub use stiffness::{GasStiffness, TermStiffness};
 
 pub use workspace::{ContactWorkspace, Workspace};

@@ -28,6 +28,55 @@ pub struct GasStiffness {
     pub gradient: Field,
 }
 
+/// The stiffness of the further energies at some positions, patch by patch.
+#[derive(Debug, Clone)]
+pub struct TermStiffness {
+    /// Nodes of each patch, term by term.
+    pub nodes: Vec<Vec<u32>>,
+    /// Matrix of each patch, N/m.
+    pub patches: Vec<DMatrix<f64>>,
+    /// Number of patches of each term.
+    counts: Vec<usize>,
+    /// The positions, m.
+    positions: Field,
+}
+
+impl TermStiffness {
+    /// Zero stiffness of the further energies of a system.
+    pub fn new(system: &FilmSystem) -> Self {
+        let of_terms: Vec<_> = system.energy_terms.iter().map(|term| term.patches()).collect();
+        let counts = of_terms.iter().map(Vec::len).collect();
+        let nodes: Vec<Vec<u32>> = of_terms.into_iter().flatten().collect();
+        let zeros = |nodes: &Vec<u32>| DMatrix::zeros(3 * nodes.len(), 3 * nodes.len());
+        let patches = nodes.iter().map(zeros).collect();
+        Self { nodes, patches, counts, positions: Field::zeros(0) }
+    }
+
+    /// Computes it at these positions (m).
+    pub fn prepare(&mut self, system: &FilmSystem, positions: &Field) {
+        if self.counts.is_empty() {
+            return;
+        }
+        self.positions.clone_from(positions);
+        let mut rest = &mut self.patches[..];
+        for (term, count) in system.energy_terms.iter().zip(&self.counts) {
+            let (of_term, others) = rest.split_at_mut(*count);
+            term.stiffness(positions, of_term);
+            rest = others;
+        }
+    }
+
+    /// Adds K u, N, of displacements u (m) to `products`.
+    pub fn add_product(&self, system: &FilmSystem, displacements: &Field, products: &mut Field) {
+        let (positions, mut rest) = (&self.positions, &self.patches[..]);
+        for (term, count) in system.energy_terms.iter().zip(&self.counts) {
+            let (patches, others) = rest.split_at(*count);
+            term.add_product(&Prepared { positions, patches }, displacements, products);
+            rest = others;
+        }
+    }
+}
+
 impl FilmSystem {
     /// Nodes and stiffness of every element with its pressure, then those of the closing faces; at these positions
     /// (m), creep strains and this overpressure (Pa).
@@ -48,8 +97,7 @@ impl FilmSystem {
         )
     }
 
-    /// Gives the blocks of contact and plates at these positions (m) and this time (s), which the
-    /// workspace is of.
+    /// Gives the blocks of contact and plates at these positions (m) and this time (s), which the workspace is of.
     pub fn pair_stiffness(
         &self,
         (positions, time): (&Field, f64),
@@ -58,36 +106,6 @@ impl FilmSystem {
     ) {
         if let (Some(model), Some(contact)) = (&self.contact, &workspace.contact) {
             model.stiffness(&self.model, &contact.trial, positions, time, add);
-        }
-    }
-
-    /// The patches of the further energies, term by term.
-    pub fn patches(&self) -> Vec<Vec<u32>> {
-        self.energy_terms.iter().flat_map(|term| term.patches()).collect()
-    }
-
-    /// The matrix of each patch at these positions (m), N/m.
-    pub fn patch_stiffness(&self, positions: &Field, patches: &mut [DMatrix<f64>]) {
-        let mut rest = patches;
-        for term in &self.energy_terms {
-            let (of_term, others) = rest.split_at_mut(term.patches().len());
-            term.stiffness(positions, of_term);
-            rest = others;
-        }
-    }
-
-    /// Adds K u of the further energies, N, of displacements u (m) to `products`; at positions (m) with these patches.
-    pub fn add_term_products(
-        &self,
-        (positions, patches): (&Field, &[DMatrix<f64>]),
-        displacements: &Field,
-        products: &mut Field,
-    ) {
-        let mut rest = patches;
-        for term in &self.energy_terms {
-            let (patches, others) = rest.split_at(term.patches().len());
-            term.add_product(&Prepared { positions, patches }, displacements, products);
-            rest = others;
         }
     }
 

@@ -5,20 +5,21 @@
 //! P = w M + K_faces + K_patches + diag(K_pairs) + κ g gᵀ  P⁻¹ by Cholesky, the gas by Sherman and Morrison
 //! ```
 //!
-//! Symbols: w weight of the inertia, 1/s²; K of membrane and pressure on faces; of the further energies, and their
-//! upper bound, patch by patch; of contacts and plates; κ g gᵀ stiffness of the gas, which is never a dense matrix. Conjugate gradients with P as preconditioner
-//! solve it; without pairs and further energies A = P, and one solution is exact. Where P is not positive definite, w grows.
+//! Symbols: w weight of the inertia, 1/s²; K of membrane and pressure on faces; of the further energies, and near it,
+//! patch by patch; of contacts and plates; κ g gᵀ stiffness of the gas, which is never a dense matrix. Conjugate
+//! gradients with P as preconditioner solve it; without pairs and further energies A = P, and one solution is exact.
+//! Where P is not positive definite, w grows.
 
-use nalgebra::{DMatrix, Matrix3, SVector};
+use nalgebra::Matrix3;
 
 use crate::factorisation::conjugate_gradients::conjugate_gradients;
 use crate::factorisation::factor::{Elimination, Factor};
 use crate::factorisation::unknowns::{Unknowns, dot};
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
-use crate::mechanics::forces::tangent::Stiffness;
+use crate::mechanics::forces::tangent::{self, Stiffness};
 use crate::platform::simd::InstructionSet;
-use crate::system::{Evaluation, FilmState, FilmSystem, Workspace};
+use crate::system::{Evaluation, FilmState, FilmSystem, TermStiffness, Workspace};
 
 /// Residual of conjugate gradients over the right side, in the norm of P⁻¹. Chosen: a Newton step needs no more.
 const MAX_RESIDUAL: f64 = 1e-4;
@@ -40,9 +41,7 @@ pub(super) struct LinearSystem {
     faces: Vec<[u32; 3]>,
     places: Vec<Place>,
     stiffness: Vec<Stiffness>,
-    patches: Vec<DMatrix<f64>>,
-    /// Positions that the stiffness is of, m; only for further energies.
-    at: Field,
+    terms: TermStiffness,
     pairs: Vec<([u32; 2], Matrix3<f64>)>,
     /// Diagonal of w M, and of the pairs, along the unknowns.
     inertia: Vec<f64>,
@@ -65,17 +64,13 @@ impl LinearSystem {
     pub(super) fn new(system: &FilmSystem, state: &FilmState, ordered_at: &Field) -> Self {
         let model = &system.model;
         let unknowns = Unknowns::new(model, &system.supports);
-        let (faces, patches) = (model.faces(), system.patches());
-        let elimination = Elimination::new(&faces, &patches, &unknowns, ordered_at);
+        let (faces, terms) = (model.faces(), TermStiffness::new(system));
+        let elimination = Elimination::new(&faces, &terms.nodes, &unknowns, ordered_at);
         let places = places(system, state, &faces);
         let zeros = || Field::zeros(model.nodes());
         Self {
             stiffness: vec![Stiffness::zeros(); faces.len()],
-            patches: patches
-                .iter()
-                .map(|nodes| DMatrix::zeros(3 * nodes.len(), 3 * nodes.len()))
-                .collect(),
-            at: zeros(),
+            terms,
             inertia: vec![0.0; unknowns.len()],
             pair_diagonal: vec![0.0; unknowns.len()],
             unknowns,
@@ -105,10 +100,7 @@ impl LinearSystem {
         for ((_, stiffness), (face, corners)) in faces.zip(&self.places) {
             add_permuted(&mut self.stiffness[*face], &stiffness, corners);
         }
-        if !system.energy_terms.is_empty() {
-            self.at.copy_from(positions);
-            system.patch_stiffness(positions, &mut self.patches);
-        }
+        self.terms.prepare(system, positions);
         let pairs = &mut self.pairs;
         pairs.clear();
         system.pair_stiffness((positions, time), workspace, &mut |nodes, block| {
@@ -152,7 +144,7 @@ impl LinearSystem {
             }
             let diagonal = self.inertia.iter().zip(&self.pair_diagonal);
             let shift: Vec<f64> = diagonal.map(|(inertia, pairs)| inertia + pairs).collect();
-            let matrices = (&self.stiffness[..], &self.patches[..]);
+            let matrices = (&self.stiffness[..], &self.terms.patches[..]);
             if self.elimination.factor(set, matrices, &shift, &mut self.factor) {
                 return true;
             }
@@ -183,17 +175,8 @@ impl LinearSystem {
         for column in [&mut forces.x, &mut forces.y, &mut forces.z] {
             column.fill(0.0);
         }
-        for (nodes, stiffness) in self.faces.iter().zip(&self.stiffness) {
-            let u = nodes.map(|node| moves.get(node as usize));
-            let u = SVector::<f64, 9>::from_fn(|row, _| u[row / 3][row % 3]);
-            let f = stiffness * u;
-            for (corner, node) in nodes.iter().enumerate() {
-                let node = *node as usize;
-                let force = f.fixed_rows::<3>(3 * corner);
-                forces.set(node, forces.get(node) + force);
-            }
-        }
-        system.add_term_products((&self.at, &self.patches), moves, forces);
+        tangent::add_products(&self.faces, &self.stiffness, moves, forces);
+        self.terms.add_product(system, moves, forces);
         for ([first, second], block) in &self.pairs {
             let force = block * moves.get(*second as usize);
             let first = *first as usize;

@@ -16,7 +16,7 @@
 //! symmetric element by element; `K_p` is its symmetric part. The antisymmetric part cancels over a closed
 //! surface, and over an open surface whose edge is held or slides in planes.
 
-use nalgebra::{Matrix3, Matrix3x2, SMatrix, Vector2, Vector3};
+use nalgebra::{Matrix3, Matrix3x2, SMatrix, SVector, Vector2, Vector3};
 
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
@@ -133,6 +133,24 @@ fn of_element(
         }
     }
     stiffness
+}
+
+/// Adds K u of faces with these stiffnesses, N, of displacements u (m) to `products`.
+pub fn add_products(
+    faces: &[[u32; 3]],
+    stiffness: &[Stiffness],
+    displacements: &Field,
+    products: &mut Field,
+) {
+    for (nodes, stiffness) in faces.iter().zip(stiffness) {
+        let u = nodes.map(|node| displacements.get(node as usize));
+        let u = SVector::<f64, 9>::from_fn(|row, _| u[row / 3][row % 3]);
+        let f = stiffness * u;
+        for (corner, node) in nodes.iter().enumerate() {
+            let node = *node as usize;
+            products.set(node, products.get(node) + f.fixed_rows::<3>(3 * corner));
+        }
+    }
 }
 
 /// Stiffness of a pressure (Pa) on a face at these positions (m), N/m.

@@ -168,12 +168,12 @@ pub fn static_states(
 }
 
 /// A scene in which everything that does not affect static equilibria has its default: gas, contact, lid,
-/// gravity, imperfection, outputs, end time, and the film's compression fraction, loss and
+/// gravity, imperfection, outputs, end time, and the film's compression fraction, bending, loss and
 /// numerical damping.
 pub fn reference_scene(scene: &Scene) -> Scene {
     Scene {
         design: scene.design.clone(),
-        film: Film { compression: 0.0, ..scene.film.elastic() },
+        film: Film { compression: 0.0, bending: false, creases: None, ..scene.film.elastic() },
         gas: GasSupply {
             initial_mass: 0.0,
             windows: Vec::new(),
