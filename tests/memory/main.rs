@@ -38,7 +38,7 @@ fn file() -> std::path::PathBuf {
 
 /// The scene of a case.
 fn scene(case: &Value) -> Scene {
-    let study = json!({
+    let mut study = json!({
         "design": {
             "fit": "cone", "N": case["N"], "M": case["M"], "bottom_radius": "500 mm",
             "top_radius": "365 mm", "height": "1 m", "stowed_height": case["stowed_height"],
@@ -47,6 +47,11 @@ fn scene(case: &Value) -> Scene {
         "solver": { "model": "film", "end_time": case["end_time"] },
         "gas": { "mass_flow_rate": "1 g/s" }
     });
+    if let Some(integrator) = case.get("bending_with") {
+        study["film"] = json!({ "compression": 1, "bending": true });
+        study["creases"] = json!({ "length_scale": "20 mm" });
+        study["solver"]["integrator"] = integrator.clone();
+    }
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("study.json");
     fs::write(&file, study.to_string()).unwrap();

@@ -14,7 +14,7 @@
 //! other.
 
 use billow_solver::geometry::fold::FoldDesign;
-use billow_solver::scene::{ModelKind, Scene};
+use billow_solver::scene::{Film, IntegratorKind, ModelKind, Scene};
 
 /// Mesh, film model and state, bytes per element.
 const MESH: f64 = 800.0;
@@ -33,7 +33,11 @@ const REFERENCE_GAP: f64 = 1100.0;
 const PANELS: [f64; 2] = [130.0, 8.0];
 /// Static equilibria, bytes per element: of a small mesh, and for each doubling of its elements.
 const STATICS: [f64; 2] = [2800.0, 190.0];
-/// Elements of the small mesh of [`STATICS`].
+/// Bending, bytes per element: of energy and forces; with its stiffness, of a small mesh, and for each doubling of its
+/// elements.
+const BENDING: f64 = 1000.0;
+const BENDING_STIFFNESS: [f64; 2] = [3000.0, 950.0];
+/// Elements of the small mesh of [`STATICS`] and [`BENDING_STIFFNESS`].
 const SMALL_MESH: f64 = 48.0;
 /// Quantities and tracks of a capsule's history, per sample.
 const COLUMNS: f64 = 42.0;
@@ -51,7 +55,7 @@ const OTHER_STACK: [u32; 2] = [6, 8];
 /// Estimated memory of a job and its parts, bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Estimate {
-    /// Mesh, film model, state.
+    /// Mesh, film model with its bending, state.
     pub mesh: u64,
     /// Contact: candidate pairs, queues, monitor.
     pub contact: u64,
@@ -78,6 +82,8 @@ pub struct FilmSize {
     pub statics: bool,
     /// Whether it moves.
     pub motion: bool,
+    /// Bending: `None` without, else whether its stiffness is needed (all but central differences).
+    pub bending: Option<bool>,
     /// Numbers of samples and of frames.
     pub samples: f64,
     /// Number of frames.
@@ -101,6 +107,7 @@ pub fn estimate(scene: &Scene) -> Estimate {
                 contact: true,
                 statics: true,
                 motion: true,
+                bending: bending(&scene.film, scene.solver.integrator),
                 samples,
                 frames: scene.outputs.frames,
                 tracks: 0,
@@ -110,6 +117,11 @@ pub fn estimate(scene: &Scene) -> Estimate {
             Estimate { total: film.total.max(gap), ..film }
         }
     }
+}
+
+/// [`FilmSize::bending`] of film in motion.
+pub fn bending(film: &Film, integrator: IntegratorKind) -> Option<bool> {
+    film.bending.then_some(integrator != IntegratorKind::Explicit)
 }
 
 /// The estimate for film of this size.
@@ -124,7 +136,12 @@ pub fn film(size: &FilmSize) -> Estimate {
     let statics = elements * (STATICS[0] + STATICS[1] * doublings + panels[1]);
     let columns = COLUMNS + size.tracks as f64;
     let frames = elements * f64::from(size.frames);
-    let mesh = MESH * elements;
+    let bending = match size.bending {
+        None => 0.0,
+        Some(false) => BENDING,
+        Some(true) => BENDING_STIFFNESS[0] + BENDING_STIFFNESS[1] * doublings,
+    };
+    let mesh = (MESH + bending) * elements;
     let contact = when(size.contact, contact);
     let statics = when(size.statics, statics);
     let checkpoint = CHECKPOINT[0] * elements + CHECKPOINT[1] * size.samples;

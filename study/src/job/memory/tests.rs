@@ -8,6 +8,7 @@ fn film_of(elements: u64, storeys: u32) -> Estimate {
         contact: true,
         statics: true,
         motion: true,
+        bending: None,
         samples: 2.0,
         frames: 0,
         tracks: 0,

@@ -4,7 +4,7 @@ use billow_solver::geometry::mesh_io::obj_reader::Surface;
 use billow_solver::scene::film_scene::FilmScene;
 
 use crate::input::source::Source;
-use crate::job::memory::{FilmSize, film, samples};
+use crate::job::memory::{FilmSize, bending, film, samples};
 use crate::platform::error::InputError;
 use crate::platform::memory::{limits, size, smallest};
 
@@ -21,16 +21,29 @@ pub(super) struct Needs {
     pub contact: bool,
     /// Whether its static equilibrium is computed.
     pub statics: bool,
+    /// [`FilmSize::bending`].
+    pub bending: Option<bool>,
 }
 
 impl Needs {
     /// The estimate for film of this number of elements; `stack`: panels and storeys of a folded capsule. Bytes.
     fn film(self, elements: u64, stack: Option<[u32; 2]>) -> u64 {
-        let Self { contact, statics } = self;
+        let Self { contact, statics, bending } = self;
         let motion = !statics;
         let contact = contact && motion;
         let (samples, frames, tracks) = (0.0, 0, 0);
-        film(&FilmSize { elements, stack, contact, statics, motion, samples, frames, tracks }).total
+        let size = FilmSize {
+            elements,
+            stack,
+            contact,
+            statics,
+            motion,
+            bending,
+            samples,
+            frames,
+            tracks,
+        };
+        film(&size).total
     }
 
     /// Refuses a capsule of this number of elements.
@@ -82,6 +95,7 @@ pub(super) fn check_outputs(film_scene: &FilmScene, source: &Source) -> Result<(
         contact: film_scene.contact.is_some(),
         statics: solver.statics,
         motion: !solver.statics,
+        bending: bending(&film_scene.film, solver.integrator).map(|stiff| stiff || solver.statics),
         samples: if solver.statics { 0.0 } else { samples },
         frames: outputs.frames,
         tracks: 3 * outputs.nodes.len() + 2 * outputs.elements.len(),

@@ -41,6 +41,7 @@ use crate::input::source::Source;
 use crate::input::value::Value;
 use crate::input::{study_file, syntax};
 use crate::job::canonical_json;
+use crate::job::memory::bending;
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::provenance::PHYSICS_VERSION;
 use crate::store::history_file::bytes_hash;
@@ -141,7 +142,10 @@ impl SceneFile {
         }
         let statics = is_static(&settings);
         let contact = contact::read(tree, &settings, &reader.source);
-        reader.needs = Needs { contact: matches!(contact, Ok(Some(_))), statics };
+        let film = settings.film(&reader.source)?;
+        let integrator = settings.integrator(&reader.source)?;
+        let bending = bending(&film, integrator).map(|stiff| stiff || statics);
+        reader.needs = Needs { contact: matches!(contact, Ok(Some(_))), statics, bending };
         let mut shape = match tree.get("mesh") {
             Some(json) => mesh::read(json, reader)?,
             None => capsule::read(&settings, reader.needs, &reader.source)?,
@@ -167,13 +171,13 @@ impl SceneFile {
         let film = FilmScene {
             shell: shape.shell,
             velocities,
-            film: settings.film(&reader.source)?,
+            film,
             filling,
             supports,
             gravity: gravity(tree.get("gravity"), &reader.source)?,
             release_time: settings.needed("release_time", &reader.source)?,
             solver: FilmSolver {
-                integrator: settings.integrator(&reader.source)?,
+                integrator,
                 cfl: settings.needed("solver.cfl", &reader.source)?,
                 end_time,
                 statics,
@@ -250,6 +254,9 @@ fn without_effect(film: &FilmScene, settings: &Settings) -> Vec<String> {
             "the film stays packed until solver.end_time"
         };
         notes.push(format!("release_time has no effect: {reason}"));
+    }
+    if film.film.creases.is_some() && film.shell.folds.is_empty() {
+        notes.push("creases has no effect: a mesh has no fold lines".to_owned());
     }
     notes
 }
