@@ -60,6 +60,13 @@ fn creases_need_bending_and_a_length_and_change_the_motion() {
         volumes[0].to_bits() != volumes[1].to_bits()
             && volumes[1].to_bits() != volumes[2].to_bits()
     );
+    let sheet_scene = json!({
+        "mesh": {"positions": "sheet.obj"}, "film": bending, "creases": length, "contact": {"enabled": false},
+        "solver": {"end_time": "1 ms"},
+    });
+    let summary = solved(&sheet_scene, &[("sheet.obj", &sheet(0.0))]);
+    let notes = summary["notes"].to_string();
+    assert!(notes.contains("creases has no effect: a mesh has no fold lines"), "{notes}");
 }
 
 #[test]
