@@ -3,10 +3,12 @@
 use std::fs;
 
 use billow_solver::platform::seal;
+use billow_study::input::value::brief_number;
 use billow_study::platform::files::{Disk, Files};
+use billow_study::store::history_file;
 use serde_json::{Value, json};
 
-use crate::support::{TestFolder, failed, file_of, grid, ids, json_of, ran};
+use crate::support::{TestFolder, failed, file_of, grid, ids, json_of, paper_design, ran};
 
 #[test]
 fn status_counts_agree_with_the_table() {
@@ -216,4 +218,26 @@ fn job_reports_a_run_that_ends_in_motion() {
     {
         assert!(said.contains(words), "{words}: {said}");
     }
+}
+
+#[test]
+fn job_says_from_when_on_the_pressure_was_uniform() {
+    let folder = TestFolder::finished(&json!({
+        "design": paper_design(2),
+        "gas": { "residual_gas_mass": "0.05 g", "mass_flow_rate": 0 },
+        "solver": { "model": "film", "end_time": "30 ms" },
+        "outputs": { "sample_interval": "1 ms" },
+        "grid": { "film.compression": [0] }
+    }));
+    let id = folder.rows("results/grid")[0]["job"].as_str().unwrap().to_owned();
+    let stored = history_file::read(&file_of(&folder, &id)).unwrap();
+    let [fractions, gaps] =
+        ["pinched_volume_fraction", "pleat_gap"].map(|name| &stored.tracks[name]);
+    // The bottom pleat of the stowed capsule is 40 mm/6 high.
+    assert!((gaps[0] - 0.04 / 6.0).abs() < 3e-4, "{}", gaps[0]);
+    let last = fractions.iter().rposition(|fraction| *fraction > 0.0).unwrap();
+    assert!(fractions.iter().all(|fraction| (0.0..=1.0).contains(fraction)) && last > 2);
+    let said = folder.stdout(&["job", &id]);
+    let time = brief_number(stored.history.column("time")[last + 1]);
+    assert!(said.contains(&format!("pressure  uniform within 10 % from {time} s on")), "{said}");
 }

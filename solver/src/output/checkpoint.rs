@@ -20,7 +20,7 @@ use crate::platform::seal;
 /// Name of the format.
 pub const FORMAT: &str = "billow-checkpoint";
 /// Version of the format this program writes and reads.
-pub const VERSION: u32 = 4;
+pub const VERSION: u32 = 5;
 
 /// A run of film between two steps.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -167,8 +167,9 @@ mod tests {
     #[test]
     fn other_versions_are_refused_by_their_number() {
         let object = seal::open(&text()).unwrap();
-        for version in [3, 5] {
-            let other = object.replace("\"version\":4", &format!("\"version\":{version}"));
+        for version in [VERSION - 1, VERSION + 1] {
+            let number = |version| format!("\"version\":{version}");
+            let other = object.replace(&number(VERSION), &number(version));
             let refused = Numbers::from_text(&seal::seal(&other), "scene");
             assert_eq!(refused, Err(CheckpointError::Version { found: version }));
         }

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use nalgebra::{Vector2, Vector3};
 
+use super::pleats::{Pleat, Side};
 use super::{Mesh, Part, Shape};
 use crate::geometry::fold::{Caps, Corner, FoldError, FoldPattern, Polygon};
 
@@ -16,7 +17,7 @@ struct Piece {
 
 /// A corner of a piece. `Ring` distinguishes corner N, on the other side of the seam, from corner 0: they
 /// have different positions in the developed film, but are the same node.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 enum PieceCorner {
     Ring(Corner),
     BottomCentre,
@@ -51,6 +52,7 @@ pub(super) fn mesh(
         top_ring: Vec::new(),
         bottom_centre: 0,
         top_centre: 0,
+        pleats: Vec::new(),
     };
     let mut nodes: HashMap<NodeKey, u32> = HashMap::new();
     let mut facet = 0;
@@ -103,7 +105,53 @@ pub(super) fn mesh(
     };
     mesh.bottom_centre = centre(PieceCorner::BottomCentre);
     mesh.top_centre = centre(PieceCorner::TopCentre);
+    mesh.pleats = pleats(pattern, subdivisions, &mesh, |corners| {
+        let [from, to] = corners.map(|corner| placement.id(corner));
+        let node =
+            |step| nodes[&node_key([(from, subdivisions - step), (to, step), (u32::MAX, 0)])];
+        (0..=subdivisions).map(node).collect()
+    });
     Ok(mesh)
+}
+
+/// The pleats of all rings. `path`: the nodes from one corner to another of the same piece.
+fn pleats(
+    pattern: &FoldPattern,
+    subdivisions: u32,
+    mesh: &Mesh,
+    path: impl Fn([PieceCorner; 2]) -> Vec<u32>,
+) -> Vec<Pleat> {
+    let (panels, storeys) = (pattern.design.panels, pattern.design.storeys);
+    let pieces = pieces(pattern);
+    let elements = (subdivisions * subdivisions) as usize;
+    let side = |piece: u32, ends: [Corner; 2]| {
+        let ends = ends.map(PieceCorner::Ring);
+        let piece = piece as usize;
+        let apex = pieces[piece].corners.into_iter().find(|corner| !ends.contains(corner));
+        let apex = apex.expect("a piece has a corner that is not on this ring");
+        let diagonal = ends.iter().position(|end| match (end, apex) {
+            (PieceCorner::Ring(end), PieceCorner::Ring(apex)) => end.corner != apex.corner,
+            _ => false,
+        });
+        let film = &mesh.triangles[piece * elements..(piece + 1) * elements];
+        Side { to_apex: ends.map(|end| path([end, apex])), diagonal, film }
+    };
+    let caps = 2 * panels * storeys;
+    let pleat = |ring: u32| {
+        let sides = |panel: u32| {
+            let ends = [panel, panel + 1].map(|corner| Corner { ring, corner });
+            let below = match ring.checked_sub(1) {
+                None => caps + panel,
+                Some(storey) => 2 * (storey * panels + panel) + 1,
+            };
+            let above =
+                if ring == storeys { caps + panels + panel } else { 2 * (ring * panels + panel) };
+            [below, above].map(|piece| side(piece, ends))
+        };
+        let sides: Vec<[Side<'_>; 2]> = (0..panels).map(sides).collect();
+        Pleat::new(&sides, &mesh.positions)
+    };
+    (0..=storeys).map(pleat).collect()
 }
 
 fn pieces(pattern: &FoldPattern) -> Vec<Piece> {

@@ -10,6 +10,9 @@ use nalgebra::{Vector2, Vector3};
 use crate::geometry::fold::{FoldError, FoldPattern};
 
 mod build;
+mod pleats;
+
+pub use pleats::{Pleat, PleatLayer};
 
 /// The state of the pattern that defines the node positions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,6 +58,8 @@ pub struct Mesh {
     pub bottom_centre: u32,
     /// Centre node of the top cap.
     pub top_centre: u32,
+    /// The pleat of each ring, the lowest first.
+    pub pleats: Vec<Pleat>,
 }
 
 impl Mesh {

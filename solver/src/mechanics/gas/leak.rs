@@ -19,7 +19,7 @@ pub(super) struct Orifice {
     /// (2/(γ+1))^(γ/(γ−1)): the flow is choked at `p_ambient`/p up to this ratio.
     critical_ratio: f64,
     /// √γ (2/(γ+1))^((γ+1)/(2(γ−1))).
-    choked_factor: f64,
+    pub(super) choked_factor: f64,
 }
 
 impl Orifice {

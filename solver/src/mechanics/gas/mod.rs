@@ -25,6 +25,7 @@ use crate::scene::{GasSupply, HeatTransfer};
 
 mod expansion;
 mod leak;
+mod slit;
 mod step;
 
 use leak::Orifice;

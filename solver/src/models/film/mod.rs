@@ -16,7 +16,7 @@ use nalgebra::Vector3;
 
 use super::Cost;
 use crate::geometry::field::Field;
-use crate::geometry::mesh::{Mesh, Part, Shape};
+use crate::geometry::mesh::{Mesh, Part, Pleat, Shape};
 use crate::integrators::{FilmSimulation, FilmView, StoredFilm};
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::damping;
@@ -37,6 +37,7 @@ use crate::system::PressureLoad;
 pub mod capsule;
 mod imperfection;
 mod ladder;
+mod pleats;
 pub mod reference_gap;
 mod solve;
 mod statics;
@@ -44,6 +45,7 @@ mod tracks;
 
 pub use crate::statics::Relaxation;
 pub use ladder::Ladder;
+pub use pleats::{MAX_UNIFORM, PLEATS as PLEAT_COLUMNS};
 pub use solve::{resume_scene, solve, solve_scene};
 pub use statics::{Erected, StaticState, erected, reference_scene, static_states};
 pub use tracks::{CONTACT as CONTACT_COLUMNS, FILM_STRESS_99};
@@ -107,6 +109,8 @@ pub struct Rings {
     pub storeys: Vec<u32>,
     /// Height of the stack while it is packed, m.
     pub stowed_height: f64,
+    /// The pleat of each ring; none where its gas is not followed.
+    pub pleats: Vec<Pleat>,
 }
 
 impl Rings {
@@ -127,6 +131,7 @@ impl Rings {
             top_centre: mesh.top_centre,
             storeys: mesh.parts.iter().map(storey).collect(),
             stowed_height,
+            pleats: mesh.pleats.clone(),
         }
     }
 }

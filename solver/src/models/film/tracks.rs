@@ -1,10 +1,13 @@
 //! Tracks and frames of the film: followed nodes and elements, the top centre, contact, plates.
 
 use super::FilmRun;
+use super::pleats::{self, PLEATS};
+use crate::geometry::mesh::Pleat;
 use crate::mechanics::forces::membrane::strain;
 use crate::mechanics::resultants::resultants;
 use crate::output::frames::{Frame, rounded};
 use crate::output::history::Track;
+use crate::system::PressureLoad;
 
 /// Name, unit and meaning of the track of film stress that one element does not decide.
 pub const FILM_STRESS_99: (&str, &str, &str) = (
@@ -63,7 +66,17 @@ pub(super) fn names(run: &FilmRun) -> Vec<Track> {
             track(format!("plate_{}_force", plate.name), "N", meaning)
         }));
     }
+    if !followed_pleats(run).is_empty() {
+        all.extend(PLEATS.map(|(name, unit, meaning)| track(name.to_owned(), unit, meaning)));
+    }
     all
+}
+
+/// The pleats whose gas is followed: those of a capsule with gas and contact.
+fn followed_pleats(run: &FilmRun) -> &[Pleat] {
+    let system = run.view().system;
+    let gas = matches!(system.pressure_load, PressureLoad::Gas(_)) && system.contact.is_some();
+    run.rings.as_ref().filter(|_| gas).map_or(&[], |rings| &rings.pleats)
 }
 
 /// The values of the tracks now, in the order of [`names`].
@@ -96,6 +109,10 @@ pub(super) fn values(run: &FilmRun, values: &mut Vec<f64>) {
             accounting.collision_impulses as f64,
         ]);
         values.extend(contact_state.plates.iter().map(|plate| plate.force));
+    }
+    let followed = followed_pleats(run);
+    if !followed.is_empty() {
+        values.extend(pleats::values(followed, &film));
     }
 }
 

@@ -23,6 +23,7 @@ use crate::store::stored::Stored;
 
 mod failure;
 mod history_table;
+mod pressure;
 mod quantities;
 mod verdict;
 
@@ -139,6 +140,7 @@ impl Inspected {
             }
             _ => failure::explanation(self),
         };
+        lines.extend(pressure::line(self));
         lines.extend(limits::lines(stored, cells));
         lines.extend(audit(cells));
         lines.extend(damping(cells));

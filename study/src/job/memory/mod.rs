@@ -40,7 +40,7 @@ const BENDING_STIFFNESS: [f64; 2] = [3000.0, 950.0];
 /// Elements of the small mesh of [`STATICS`] and [`BENDING_STIFFNESS`].
 const SMALL_MESH: f64 = 48.0;
 /// Quantities and tracks of a capsule's history, per sample.
-const COLUMNS: f64 = 42.0;
+const COLUMNS: f64 = 46.0;
 /// Bytes of one number of a sample: during a run, with growing lists; and afterwards, with the history file
 /// and its copy.
 const NUMBER: [f64; 2] = [30.0, 36.0];

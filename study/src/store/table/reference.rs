@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use billow_solver::models::film::{CONTACT_COLUMNS, FILM_STRESS_99};
+use billow_solver::models::film::{CONTACT_COLUMNS, FILM_STRESS_99, PLEAT_COLUMNS};
 use billow_solver::output::history::{COLUMNS as HISTORY_COLUMNS, RING_COLUMNS};
 
 use super::extrapolated::{EXTRAPOLATED, EXTRAPOLATED_ERROR, EXTRAPOLATED_ERROR_MEANING};
@@ -146,6 +146,9 @@ fn history_columns(page: &mut String) {
     let _ = writeln!(page, "| `{name}` | {unit} | film | {meaning} |");
     for (name, unit, meaning) in CONTACT_COLUMNS {
         let _ = writeln!(page, "| `{name}` | {unit} | film with contact | {meaning} |");
+    }
+    for (name, unit, meaning) in PLEAT_COLUMNS {
+        let _ = writeln!(page, "| `{name}` | {unit} | capsule with gas and contact | {meaning} |");
     }
     page.push_str(
         "| `plate_NAME_force` | N | each plate of a scene | force of the film on the plate along its \

@@ -197,7 +197,8 @@ impl Plate {
         let mut scene = FilmScene { supports, filling, ..free_film(shell, Film::PAPER_ELASTIC) };
         (scene.solver.cfl, scene.solver.integrator) = (cfl, integrator);
         let (top_ring, storeys) = (UPPER.to_vec(), Vec::new());
-        let rings = Rings { top_ring, top_centre: UPPER[0], storeys, stowed_height: 0.0 };
+        let (stowed_height, pleats) = (0.0, Vec::new());
+        let rings = Rings { top_ring, top_centre: UPPER[0], storeys, stowed_height, pleats };
         Ok(FilmRun::with(rig.start(&scene)?, &scene, Some(rings)))
     }
 

@@ -1,0 +1,182 @@
+//! Gas in pinched pleats: whether the uniform pressure of the model can hold.
+//!
+//! ```text
+//! supply       C = Σ w c(h)     over the rim: w its share of the length, h its distance to the other layer of the pleat
+//! demand       |dV/dt|          of the pleat, from the velocities
+//! difference   demand/C         pressure difference over p that drives the demand where flow is linear in it; from 1 on
+//!                               the pleat starves
+//! ```
+//!
+//! c: `Gas::slit_conductance`. Gas flows freely around the axis within a pleat. It is a report: the film feels one
+//! pressure.
+
+use nalgebra::Vector3;
+
+use crate::collision::contact::distance::point_triangle;
+use crate::geometry::field::Field;
+use crate::geometry::mesh::{Pleat, PleatLayer};
+use crate::integrators::FilmView;
+use crate::system::PressureLoad;
+
+/// Tracks of a capsule with gas and contact: name, unit, meaning.
+pub const PLEATS: [(&str, &str, &str); 4] = [
+    (
+        "pinched_volume_fraction",
+        "1",
+        "share of the volume of the pleats in those that need a pressure difference above 10 % for their flow of gas",
+    ),
+    (
+        "pleat_pressure_difference",
+        "1",
+        "pressure difference over the pressure that the pleat with the largest one needs for its flow",
+    ),
+    ("pleat_gap", "m", "mean gap at the mouth of that pleat"),
+    (
+        "pleat_conductance",
+        "m3/s",
+        "flow of gas that its mouth passes at most, at the pressure of the gas",
+    ),
+];
+/// Pressure difference over the pressure above which a pleat counts as pinched. Chosen.
+pub const MAX_UNIFORM: f64 = 0.1;
+/// Length of the narrow passage behind a rim, m. Assumed: a fifth of the depth of the paper's pleats.
+const PASSAGE: f64 = 0.05;
+/// Elements that one sphere excludes together. Chosen.
+const BLOCK: usize = 8;
+
+/// The values of [`PLEATS`] now; zeros without gas.
+pub(super) fn values(pleats: &[Pleat], film: &FilmView<'_>) -> [f64; PLEATS.len()] {
+    let state = film.state;
+    let PressureLoad::Gas(gas) = film.system.pressure_load else { return [0.0; PLEATS.len()] };
+    let (pressure, temperature) = (state.pressure, gas.temperature(state.gas));
+    let (mut pinched, mut all, mut worst) = (0.0, 0.0, [0.0; 3]);
+    for (index, pleat) in pleats.iter().enumerate() {
+        let rims: Vec<Vec<(f64, f64)>> =
+            [0, 1].map(|layer| gaps(pleat, layer, &state.positions)).into();
+        let sum = |value: &dyn Fn(f64) -> f64| -> f64 {
+            rims.iter().flatten().map(|(share, gap)| share * value(*gap)).sum()
+        };
+        let used = rims.iter().filter(|rim| !rim.is_empty()).count() as f64;
+        let conductance =
+            sum(&|gap| gas.slit_conductance(pressure, temperature, gap, PASSAGE)) / used;
+        let (volume, rate) = volume(pleat, &state.positions, &state.velocities);
+        let difference = if rate == 0.0 { 0.0 } else { rate.abs() / conductance };
+        all += volume.max(0.0);
+        if difference > MAX_UNIFORM {
+            pinched += volume.max(0.0);
+        }
+        if index == 0 || difference > worst[0] {
+            worst = [difference, sum(&|gap| gap) / sum(&|_| 1.0), conductance];
+        }
+    }
+    [if pinched > 0.0 { pinched / all } else { 0.0 }, worst[0], worst[1], worst[2]]
+}
+
+/// Share of the length and distance (m) to the other layer, of each node on the rim of a layer.
+fn gaps(pleat: &Pleat, layer: usize, positions: &Field) -> Vec<(f64, f64)> {
+    let PleatLayer { rim, .. } = &pleat.layers[layer];
+    if rim.is_empty() {
+        return Vec::new();
+    }
+    // Most film is farther away than the nearest so far: spheres exclude eight elements together, and each alone.
+    let film = &pleat.layers[1 - layer].film;
+    let spheres: Vec<_> = film.iter().map(|nodes| Sphere::about(nodes, positions)).collect();
+    let blocks: Vec<_> =
+        film.chunks(BLOCK).map(|block| Sphere::about(block.as_flattened(), positions)).collect();
+    let gap = |node: u32, first: &mut usize| {
+        let point = positions.get(node as usize);
+        let mut nearest = f64::INFINITY;
+        let look = |block: usize, nearest: &mut f64, first: &mut usize| {
+            if !blocks[block].is_within(&point, *nearest) {
+                return;
+            }
+            let elements = block * BLOCK..film.len().min((block + 1) * BLOCK);
+            for element in elements {
+                if spheres[element].is_within(&point, *nearest) {
+                    let [a, b, c] = film[element].map(|node| positions.get(node as usize));
+                    let distance = point_triangle(&[point, a, b, c]).squared.sqrt();
+                    if distance < *nearest {
+                        (*nearest, *first) = (distance, block);
+                    }
+                }
+            }
+        };
+        // What was nearest to the node before is near this one.
+        look(*first, &mut nearest, &mut first.clone());
+        for block in 0..blocks.len() {
+            look(block, &mut nearest, first);
+        }
+        nearest
+    };
+    let mut first = 0;
+    rim.iter().map(|(node, share)| (*share, gap(*node, &mut first))).collect()
+}
+
+/// A sphere about nodes.
+struct Sphere {
+    centre: Vector3<f64>,
+    radius: f64,
+}
+
+impl Sphere {
+    fn about(nodes: &[u32], positions: &Field) -> Self {
+        let points = || nodes.iter().map(|node| positions.get(*node as usize));
+        let centre = points().sum::<Vector3<f64>>() / nodes.len() as f64;
+        let squared = points().map(|point| (point - centre).norm_squared()).fold(0.0, f64::max);
+        Self { centre, radius: squared.sqrt() }
+    }
+
+    /// Whether a part of it may be nearer to a point than this distance (m).
+    fn is_within(&self, point: &Vector3<f64>, distance: f64) -> bool {
+        let reach = distance + self.radius;
+        (point - self.centre).norm_squared() < reach * reach
+    }
+}
+
+/// V (m³) and dV/dt (m³/s) of a pleat.
+fn volume(pleat: &Pleat, positions: &Field, velocities: &Field) -> (f64, f64) {
+    let film = pleat.layers.iter().flat_map(|layer| &layer.film);
+    let (mut volume, mut rate) = (0.0, 0.0);
+    for nodes in film.chain(&pleat.mouth) {
+        let [a, b, c] = nodes.map(|node| positions.get(node as usize));
+        let [va, vb, vc] = nodes.map(|node| velocities.get(node as usize));
+        let (bc, ca, ab) = (b.cross(&c), c.cross(&a), a.cross(&b));
+        volume += a.dot(&bc) / 6.0;
+        rate += (va.dot(&bc) + vb.dot(&ca) + vc.dot(&ab)) / 6.0;
+    }
+    (volume, rate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::fold::FoldPattern;
+    use crate::geometry::mesh::{Mesh, Shape};
+    use crate::scene::paper;
+
+    #[test]
+    fn a_stowed_pleat_is_as_wide_as_its_layers_are_apart() {
+        let pattern = FoldPattern::new(&paper::design(8)).unwrap();
+        let mesh = Mesh::new(&pattern, 8, Shape::Stowed(0.04)).unwrap();
+        let positions = Field::of(&mesh.positions);
+        let gaps = gaps(&mesh.pleats[0], 1, &positions);
+        let length: f64 = gaps.iter().map(|(share, _)| share).sum();
+        let mean = gaps.iter().map(|(share, gap)| share * gap).sum::<f64>() / length;
+        // The diagonals rise from the cap through a third of the stack.
+        assert!((mean - 0.04 / 6.0).abs() < 1e-4, "{mean}");
+        let nearest = |node: u32| {
+            let point = positions.get(node as usize);
+            let distance = |nodes: &[u32; 3]| {
+                let [a, b, c] = nodes.map(|node| positions.get(node as usize));
+                point_triangle(&[point, a, b, c]).squared.sqrt()
+            };
+            mesh.pleats[0].layers[0].film.iter().map(distance).fold(f64::INFINITY, f64::min)
+        };
+        for ((node, _), (_, gap)) in mesh.pleats[0].layers[1].rim.iter().zip(&gaps) {
+            assert!((nearest(*node) - gap).abs() < 1e-15);
+        }
+        // Film that grows in all directions at the rate 1: dV/dt = 3 V.
+        let (volume, rate) = volume(&mesh.pleats[1], &positions, &positions);
+        assert!(volume > 0.0 && (rate - 3.0 * volume).abs() < 1e-12 * volume);
+    }
+}
