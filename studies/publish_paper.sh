@@ -31,7 +31,7 @@ measures=verdict,volume_ratio,height_ratio,final_z_rim,final_volume,final_pressu
   table paper-ensemble 'paper-ensemble.json: n 5, five seeds'
   table paper-ensemble 'paper-ensemble.json: end states' \
     --columns strategy,compression,deployed,volume_ratio,height_ratio,final_z_rim,final_volume,final_pressure
-  table paper-mesh 'paper-mesh.json' --columns "strategy,compression,subdivisions,$measures"
+  table paper-mesh 'paper-mesh.json' --columns "strategy,bending,subdivisions,$measures"
 } > "$out/tables.md"
 
 # chart NAME STUDY OPTION...
@@ -51,7 +51,11 @@ chart first-second paper --history z_centre,vz,kinetic_energy --to '1 s' \
 chart bands paper-ensemble --history z_centre,volume --where 'compression == 1' --to '12 s' \
   --title "Five seeds of each case, compression fraction 1"
 chart outcomes paper-ensemble --measure verdict --map compression,strategy
-chart mesh paper-mesh --measure volume_ratio --over subdivisions --by strategy
+chart mesh paper-mesh --measure volume_ratio --over subdivisions --by strategy,bending
+
+job=$("$billow" table "$results/paper-mesh" --format csv --columns job --where \
+  "strategy == 'residual' and bending == true and subdivisions == 8" | sed -n 2p)
+"$billow" frames "$job" "$results/paper-mesh" -q --count 4 --out "$out/frames-bending-8.png" > /dev/null
 
 # Filmstrips: strategy and compression fraction.
 while read -r strategy compression; do
