@@ -57,9 +57,13 @@ FILM_UNITS = {
     "contact_pairs": "1",
     "broad_phase_rebuilds": "1",
     "collision_impulses": "1",
+    "pinched_volume_fraction": "1",
+    "pleat_pressure_difference": "1",
+    "pleat_gap": "m",
+    "pleat_conductance": "m3/s",
 }
 UNITS = {"", "1", "s", "m", "m/s", "m2", "m3", "Pa", "K", "kg", "kg/s", "N", "N/m", "J", "Hz", "rad", "ns",
-         "kg/m3", "m/s2", "J/(kg K)", "W/(m2 K)"}
+         "kg/m3", "m3/s", "m/s2", "J/(kg K)", "W/(m2 K)"}
 TABLE_UNITS = {
     "job": "",
     "status": "",
