@@ -58,7 +58,7 @@ FILM_UNITS = {
     "broad_phase_rebuilds": "1",
     "collision_impulses": "1",
     "pinched_volume_fraction": "1",
-    "pleat_pressure_difference": "1",
+    "pleat_relative_pressure_difference": "1",
     "pleat_gap": "m",
     "pleat_conductance": "m3/s",
 }

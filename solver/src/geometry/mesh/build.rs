@@ -5,24 +5,10 @@ use std::collections::HashMap;
 
 use nalgebra::{Vector2, Vector3};
 
-use super::pleats::{Pleat, Side};
+use super::pieces::{Piece, PieceCorner, pieces};
+use super::pleats::pleats;
 use super::{Mesh, Part, Shape};
-use crate::geometry::fold::{Caps, Corner, FoldError, FoldPattern, Polygon};
-
-/// A triangle to subdivide: a facet of the lateral film or a wedge of a cap.
-struct Piece {
-    part: Part,
-    corners: [PieceCorner; 3],
-}
-
-/// A corner of a piece. `Ring` distinguishes corner N, on the other side of the seam, from corner 0: they
-/// have different positions in the developed film, but are the same node.
-#[derive(Clone, Copy, PartialEq)]
-enum PieceCorner {
-    Ring(Corner),
-    BottomCentre,
-    TopCentre,
-}
+use crate::geometry::fold::{Caps, FoldError, FoldPattern, Polygon};
 
 /// Identity of a node: its corners, ascending, each with its barycentric weight times n.
 type NodeKey = [(u32, u32); 3];
@@ -56,7 +42,8 @@ pub(super) fn mesh(
     };
     let mut nodes: HashMap<NodeKey, u32> = HashMap::new();
     let mut facet = 0;
-    for (index, piece) in pieces(pattern).iter().enumerate() {
+    let pieces = pieces(pattern);
+    for (index, piece) in pieces.iter().enumerate() {
         // A cap is one flat sheet of several wedges.
         let same_sheet =
             !matches!(piece.part, Part::Storey(_)) && mesh.parts.last() == Some(&piece.part);
@@ -105,72 +92,13 @@ pub(super) fn mesh(
     };
     mesh.bottom_centre = centre(PieceCorner::BottomCentre);
     mesh.top_centre = centre(PieceCorner::TopCentre);
-    mesh.pleats = pleats(pattern, subdivisions, &mesh, |corners| {
+    mesh.pleats = pleats(pattern, &pieces, &mesh, |corners| {
         let [from, to] = corners.map(|corner| placement.id(corner));
         let node =
             |step| nodes[&node_key([(from, subdivisions - step), (to, step), (u32::MAX, 0)])];
         (0..=subdivisions).map(node).collect()
     });
     Ok(mesh)
-}
-
-/// The pleats of all rings. `path`: the nodes from one corner to another of the same piece.
-fn pleats(
-    pattern: &FoldPattern,
-    subdivisions: u32,
-    mesh: &Mesh,
-    path: impl Fn([PieceCorner; 2]) -> Vec<u32>,
-) -> Vec<Pleat> {
-    let (panels, storeys) = (pattern.design.panels, pattern.design.storeys);
-    let pieces = pieces(pattern);
-    let elements = (subdivisions * subdivisions) as usize;
-    let side = |piece: u32, ends: [Corner; 2]| {
-        let ends = ends.map(PieceCorner::Ring);
-        let piece = piece as usize;
-        let apex = pieces[piece].corners.into_iter().find(|corner| !ends.contains(corner));
-        let apex = apex.expect("a piece has a corner that is not on this ring");
-        let diagonal = ends.iter().position(|end| match (end, apex) {
-            (PieceCorner::Ring(end), PieceCorner::Ring(apex)) => end.corner != apex.corner,
-            _ => false,
-        });
-        let film = &mesh.triangles[piece * elements..(piece + 1) * elements];
-        Side { to_apex: ends.map(|end| path([end, apex])), diagonal, film }
-    };
-    let caps = 2 * panels * storeys;
-    let pleat = |ring: u32| {
-        let sides = |panel: u32| {
-            let ends = [panel, panel + 1].map(|corner| Corner { ring, corner });
-            let below = match ring.checked_sub(1) {
-                None => caps + panel,
-                Some(storey) => 2 * (storey * panels + panel) + 1,
-            };
-            let above =
-                if ring == storeys { caps + panels + panel } else { 2 * (ring * panels + panel) };
-            [below, above].map(|piece| side(piece, ends))
-        };
-        let sides: Vec<[Side<'_>; 2]> = (0..panels).map(sides).collect();
-        Pleat::new(&sides, &mesh.positions)
-    };
-    (0..=storeys).map(pleat).collect()
-}
-
-fn pieces(pattern: &FoldPattern) -> Vec<Piece> {
-    let lateral = pattern.facets().into_iter().map(|facet| Piece {
-        part: Part::Storey(facet.storey),
-        corners: facet.corners.map(PieceCorner::Ring),
-    });
-    let wedge = |ring: u32, panel: u32| {
-        [Corner { ring, corner: panel }, Corner { ring, corner: panel + 1 }].map(PieceCorner::Ring)
-    };
-    let bottom = (0..pattern.design.panels).map(|panel| {
-        let [p, q] = wedge(0, panel);
-        Piece { part: Part::BottomCap, corners: [PieceCorner::BottomCentre, q, p] }
-    });
-    let top = (0..pattern.design.panels).map(|panel| {
-        let [p, q] = wedge(pattern.design.storeys, panel);
-        Piece { part: Part::TopCap, corners: [PieceCorner::TopCentre, p, q] }
-    });
-    lateral.chain(bottom).chain(top).collect()
 }
 
 fn node_key(mut weights: NodeKey) -> NodeKey {

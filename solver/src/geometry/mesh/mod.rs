@@ -10,6 +10,7 @@ use nalgebra::{Vector2, Vector3};
 use crate::geometry::fold::{FoldError, FoldPattern};
 
 mod build;
+mod pieces;
 mod pleats;
 
 pub use pleats::{Pleat, PleatLayer};

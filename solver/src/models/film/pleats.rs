@@ -1,7 +1,7 @@
 //! Gas in pinched pleats: whether the uniform pressure of the model can hold.
 //!
 //! ```text
-//! supply       C = Σ w c(h)     over the rim: w its share of the length, h its distance to the other layer of the pleat
+//! supply       C = Σ w c(h)     over the rim: w its part of the length, h its distance to the other layer of the pleat
 //! demand       |dV/dt|          of the pleat, from the velocities
 //! difference   demand/C         pressure difference over p that drives the demand where flow is linear in it; from 1 on
 //!                               the pleat starves
@@ -14,19 +14,19 @@ use nalgebra::Vector3;
 
 use crate::collision::contact::distance::point_triangle;
 use crate::geometry::field::Field;
-use crate::geometry::mesh::{Pleat, PleatLayer};
-use crate::integrators::FilmView;
-use crate::system::PressureLoad;
+use crate::geometry::mesh::Pleat;
+use crate::mechanics::gas::Gas;
+use crate::system::FilmState;
 
 /// Tracks of a capsule with gas and contact: name, unit, meaning.
 pub const PLEATS: [(&str, &str, &str); 4] = [
     (
         "pinched_volume_fraction",
         "1",
-        "share of the volume of the pleats in those that need a pressure difference above 10 % for their flow of gas",
+        "fraction of the volume of the pleats in those that need a pressure difference above 10 % for their flow of gas",
     ),
     (
-        "pleat_pressure_difference",
+        "pleat_relative_pressure_difference",
         "1",
         "pressure difference over the pressure that the pleat with the largest one needs for its flow",
     ),
@@ -44,21 +44,21 @@ const PASSAGE: f64 = 0.05;
 /// Elements that one sphere excludes together. Chosen.
 const BLOCK: usize = 8;
 
-/// The values of [`PLEATS`] now; zeros without gas.
-pub(super) fn values(pleats: &[Pleat], film: &FilmView<'_>) -> [f64; PLEATS.len()] {
-    let state = film.state;
-    let PressureLoad::Gas(gas) = film.system.pressure_load else { return [0.0; PLEATS.len()] };
+/// The values of [`PLEATS`] now.
+pub(super) fn values(pleats: &[Pleat], gas: &Gas, state: &FilmState) -> [f64; PLEATS.len()] {
     let (pressure, temperature) = (state.pressure, gas.temperature(state.gas));
     let (mut pinched, mut all, mut worst) = (0.0, 0.0, [0.0; 3]);
     for (index, pleat) in pleats.iter().enumerate() {
-        let rims: Vec<Vec<(f64, f64)>> =
-            [0, 1].map(|layer| gaps(pleat, layer, &state.positions)).into();
-        let sum = |value: &dyn Fn(f64) -> f64| -> f64 {
-            rims.iter().flatten().map(|(share, gap)| share * value(*gap)).sum()
-        };
-        let used = rims.iter().filter(|rim| !rim.is_empty()).count() as f64;
-        let conductance =
-            sum(&|gap| gas.slit_conductance(pressure, temperature, gap, PASSAGE)) / used;
+        let rims = [0, 1].map(|layer| gaps(pleat, layer, &state.positions));
+        // Where both layers have a rim, the mouth is as long as one.
+        let rims_used = rims.iter().filter(|rim| !rim.is_empty()).count() as f64;
+        let (mut conductance, mut gap_sum, mut length_sum) = (0.0, 0.0, 0.0);
+        for (length, gap) in rims.into_iter().flatten() {
+            conductance += length * gas.slit_conductance(pressure, temperature, gap, PASSAGE);
+            gap_sum += length * gap;
+            length_sum += length;
+        }
+        conductance /= rims_used;
         let (volume, rate) = volume(pleat, &state.positions, &state.velocities);
         let difference = if rate == 0.0 { 0.0 } else { rate.abs() / conductance };
         all += volume.max(0.0);
@@ -66,15 +66,16 @@ pub(super) fn values(pleats: &[Pleat], film: &FilmView<'_>) -> [f64; PLEATS.len(
             pinched += volume.max(0.0);
         }
         if index == 0 || difference > worst[0] {
-            worst = [difference, sum(&|gap| gap) / sum(&|_| 1.0), conductance];
+            worst = [difference, gap_sum / length_sum, conductance];
         }
     }
-    [if pinched > 0.0 { pinched / all } else { 0.0 }, worst[0], worst[1], worst[2]]
+    let fraction = if pinched > 0.0 { pinched / all } else { 0.0 };
+    [fraction, worst[0], worst[1], worst[2]]
 }
 
-/// Share of the length and distance (m) to the other layer, of each node on the rim of a layer.
+/// Part of the length (m) and distance to the other layer (m) of each node on the rim of a layer.
 fn gaps(pleat: &Pleat, layer: usize, positions: &Field) -> Vec<(f64, f64)> {
-    let PleatLayer { rim, .. } = &pleat.layers[layer];
+    let rim = &pleat.layers[layer].rim;
     if rim.is_empty() {
         return Vec::new();
     }
@@ -83,33 +84,29 @@ fn gaps(pleat: &Pleat, layer: usize, positions: &Field) -> Vec<(f64, f64)> {
     let spheres: Vec<_> = film.iter().map(|nodes| Sphere::about(nodes, positions)).collect();
     let blocks: Vec<_> =
         film.chunks(BLOCK).map(|block| Sphere::about(block.as_flattened(), positions)).collect();
-    let gap = |node: u32, first: &mut usize| {
+    let mut first = 0;
+    let gap = |node: u32| {
         let point = positions.get(node as usize);
         let mut nearest = f64::INFINITY;
-        let look = |block: usize, nearest: &mut f64, first: &mut usize| {
-            if !blocks[block].is_within(&point, *nearest) {
-                return;
+        // First the block that was nearest to the node before.
+        for block in core::iter::once(first).chain(0..blocks.len()) {
+            if !blocks[block].is_within(&point, nearest) {
+                continue;
             }
-            let elements = block * BLOCK..film.len().min((block + 1) * BLOCK);
-            for element in elements {
-                if spheres[element].is_within(&point, *nearest) {
+            for element in block * BLOCK..film.len().min((block + 1) * BLOCK) {
+                if spheres[element].is_within(&point, nearest) {
                     let [a, b, c] = film[element].map(|node| positions.get(node as usize));
                     let distance = point_triangle(&[point, a, b, c]).squared.sqrt();
-                    if distance < *nearest {
-                        (*nearest, *first) = (distance, block);
+                    if distance < nearest {
+                        (nearest, first) = (distance, block);
                     }
                 }
             }
-        };
-        // What was nearest to the node before is near this one.
-        look(*first, &mut nearest, &mut first.clone());
-        for block in 0..blocks.len() {
-            look(block, &mut nearest, first);
         }
         nearest
     };
-    let mut first = 0;
-    rim.iter().map(|(node, share)| (*share, gap(*node, &mut first))).collect()
+    let gaps = rim.iter().map(|(node, _)| *node).map(gap);
+    rim.iter().map(|(_, length)| *length).zip(gaps).collect()
 }
 
 /// A sphere about nodes.
@@ -160,8 +157,8 @@ mod tests {
         let mesh = Mesh::new(&pattern, 8, Shape::Stowed(0.04)).unwrap();
         let positions = Field::of(&mesh.positions);
         let gaps = gaps(&mesh.pleats[0], 1, &positions);
-        let length: f64 = gaps.iter().map(|(share, _)| share).sum();
-        let mean = gaps.iter().map(|(share, gap)| share * gap).sum::<f64>() / length;
+        let length: f64 = gaps.iter().map(|(length, _)| length).sum();
+        let mean = gaps.iter().map(|(part, gap)| part * gap).sum::<f64>() / length;
         // The diagonals rise from the cap through a third of the stack.
         assert!((mean - 0.04 / 6.0).abs() < 1e-4, "{mean}");
         let nearest = |node: u32| {

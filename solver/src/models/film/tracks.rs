@@ -4,6 +4,7 @@ use super::FilmRun;
 use super::pleats::{self, PLEATS};
 use crate::geometry::mesh::Pleat;
 use crate::mechanics::forces::membrane::strain;
+use crate::mechanics::gas::Gas;
 use crate::mechanics::resultants::resultants;
 use crate::output::frames::{Frame, rounded};
 use crate::output::history::Track;
@@ -66,17 +67,18 @@ pub(super) fn names(run: &FilmRun) -> Vec<Track> {
             track(format!("plate_{}_force", plate.name), "N", meaning)
         }));
     }
-    if !followed_pleats(run).is_empty() {
+    if followed_pleats(run).is_some() {
         all.extend(PLEATS.map(|(name, unit, meaning)| track(name.to_owned(), unit, meaning)));
     }
     all
 }
 
-/// The pleats whose gas is followed: those of a capsule with gas and contact.
-fn followed_pleats(run: &FilmRun) -> &[Pleat] {
+/// The pleats whose gas is followed, and the gas: those of a capsule with gas and contact.
+fn followed_pleats(run: &FilmRun) -> Option<(&[Pleat], &Gas)> {
     let system = run.view().system;
-    let gas = matches!(system.pressure_load, PressureLoad::Gas(_)) && system.contact.is_some();
-    run.rings.as_ref().filter(|_| gas).map_or(&[], |rings| &rings.pleats)
+    let PressureLoad::Gas(gas) = &system.pressure_load else { return None };
+    let pleats = &run.rings.as_ref()?.pleats;
+    (system.contact.is_some() && !pleats.is_empty()).then_some((pleats, gas))
 }
 
 /// The values of the tracks now, in the order of [`names`].
@@ -110,9 +112,8 @@ pub(super) fn values(run: &FilmRun, values: &mut Vec<f64>) {
         ]);
         values.extend(contact_state.plates.iter().map(|plate| plate.force));
     }
-    let followed = followed_pleats(run);
-    if !followed.is_empty() {
-        values.extend(pleats::values(followed, &film));
+    if let Some((followed, gas)) = followed_pleats(run) {
+        values.extend(pleats::values(followed, gas, state));
     }
 }
 
