@@ -26,6 +26,8 @@ pub struct Pleat {
     pub layers: [PleatLayer; 2],
     /// Triangles that close the volume of both layers, counter-clockwise seen from outside.
     pub mouth: Vec<[u32; 3]>,
+    /// Mean length of the diagonals of its rims, m.
+    pub diagonal: f64,
 }
 
 /// Film on one side of a pleat.
@@ -74,6 +76,9 @@ pub(super) fn pleats(
             pleat.close(&above[0], &below[0]);
             pleat.close(&below[1], &above[1]);
         }
+        let rims = || pleat.layers.iter().filter(|layer| !layer.rim.is_empty());
+        let length: f64 = rims().flat_map(|layer| &layer.rim).map(|(_, length)| length).sum();
+        pleat.diagonal = length / (f64::from(panels) * rims().count() as f64);
         pleat
     };
     (0..=storeys).map(pleat).collect()

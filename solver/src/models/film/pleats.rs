@@ -39,8 +39,9 @@ pub const PLEATS: [(&str, &str, &str); 4] = [
 ];
 /// Pressure difference over the pressure above which a pleat counts as pinched. Chosen.
 pub const MAX_UNIFORM: f64 = 0.1;
-/// Length of the narrow passage behind a rim, m. Assumed: a fifth of the depth of the paper's pleats.
-const PASSAGE: f64 = 0.05;
+/// Length of the narrow passage behind a rim over that of a diagonal. Assumed: 45 to 55 mm in the
+/// paper's capsule.
+const PASSAGE: f64 = 1.0 / 15.0;
 /// Elements that one sphere excludes together. Chosen.
 const BLOCK: usize = 8;
 
@@ -52,9 +53,10 @@ pub(super) fn values(pleats: &[Pleat], gas: &Gas, state: &FilmState) -> [f64; PL
         let rims = [0, 1].map(|layer| gaps(pleat, layer, &state.positions));
         // Where both layers have a rim, the mouth is as long as one.
         let rims_used = rims.iter().filter(|rim| !rim.is_empty()).count() as f64;
+        let passage = PASSAGE * pleat.diagonal;
         let (mut conductance, mut gap_sum, mut length_sum) = (0.0, 0.0, 0.0);
         for (length, gap) in rims.into_iter().flatten() {
-            conductance += length * gas.slit_conductance(pressure, temperature, gap, PASSAGE);
+            conductance += length * gas.slit_conductance(pressure, temperature, gap, passage);
             gap_sum += length * gap;
             length_sum += length;
         }
