@@ -3,6 +3,8 @@
 //! A strip is clamped by elements that are held at all their nodes. Poisson's ratio of the strips is 0: then a narrow
 //! strip has the stiffness D of a plate.
 
+use core::ops::Range;
+
 use billow_solver::geometry::shapes::{crossed_grid, grid, nodes_where, pseudo_random};
 
 use billow_solver::output::ledger::Ledger;
@@ -11,24 +13,34 @@ use super::oscillation::frequency;
 use super::prelude::*;
 
 /// Length over width of the strips, and thickness over length. Chosen: slender, and hardly stretched.
-const SLENDERNESS: f64 = 4.0;
-const THINNESS: f64 = 1.0 / 500.0;
+pub const SLENDERNESS: f64 = 4.0;
+pub const THINNESS: f64 = 1.0 / 500.0;
 /// Thickness of the plates over their side. Chosen: stretching and bending forces of similar size have few rounding errors.
-const PLATE_THINNESS: f64 = 1.0 / 50.0;
+pub const PLATE_THINNESS: f64 = 1.0 / 50.0;
 /// Displacement of the inner nodes of an irregular mesh over its cells. Chosen as in the comparison of bending models
 /// (`docs/experiments.md`).
 const IRREGULAR: f64 = 0.28;
 
-/// A strip along x from 0 to its length, with one more column of elements before it.
-struct Strip {
-    shell: Shell,
-    clamped: Vec<u32>,
-    end: Vec<u32>,
+/// A strip along x from 0 to its length.
+pub struct Strip {
+    pub shell: Shell,
+    /// Nodes of its start and of one more column of elements before it.
+    pub clamped: Vec<u32>,
+    /// Nodes of its end, and of the column beyond it if there is one.
+    pub end: Vec<u32>,
 }
 
-fn strip(length: f64, width: f64, [columns, rows]: [u32; 2], irregular: bool) -> Strip {
+/// A strip with one more column of elements before it, and with `beyond` a column after its end.
+pub fn strip(
+    length: f64,
+    width: f64,
+    [columns, rows]: [u32; 2],
+    irregular: bool,
+    beyond: bool,
+) -> Strip {
     let cell = length / f64::from(columns);
-    let shell = grid(columns + 1, rows, length + cell, width);
+    let more = 1 + u32::from(beyond);
+    let shell = grid(columns + more, rows, length + f64::from(more) * cell, width);
     let shell = moved(shell, |x| x - Vector3::new(cell, 0.0, 0.0));
     let clamped = nodes_where(&shell, |x| x.x < 1e-9 * length);
     let end = nodes_where(&shell, |x| x.x > length * (1.0 - 1e-9));
@@ -45,13 +57,13 @@ fn strip(length: f64, width: f64, [columns, rows]: [u32; 2], irregular: bool) ->
 }
 
 /// Film that is flat and free of stress at these positions (m) in the plane z = 0.
-fn flat(positions: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>) -> Shell {
+pub fn flat(positions: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>) -> Shell {
     let reference = triangles.iter().map(|t| t.map(|node| positions[node as usize].xy())).collect();
     Shell { positions, triangles, reference, ..Shell::default() }
 }
 
 /// Film with this thickness (m) and a bending stiffness of 1 N m, with Poisson's ratio 0.
-fn stiff(thickness: f64) -> Film {
+pub fn stiff(thickness: f64) -> Film {
     let youngs_modulus = 12.0 / (thickness * thickness * thickness);
     let (poisson_ratio, density) = (0.0, 1.0 / thickness);
     let elastic = Film { compression: 1.0, bending: true, ..Film::PAPER_ELASTIC };
@@ -59,16 +71,16 @@ fn stiff(thickness: f64) -> Film {
 }
 
 /// Meshes of the strips: cells along and across on the coarsest of three, and whether they are irregular.
-const STRIPS: [(&str, [u32; 2], bool); 3] =
+pub const STRIPS: [(&str, [u32; 2], bool); 3] =
     [("structured", [16, 4], false), ("irregular", [16, 4], true), ("slender", [16, 12], true)];
 
 /// The band of a mesh.
-fn band_of(band: f64, irregular: bool) -> f64 {
+pub fn band_of(band: f64, irregular: bool) -> f64 {
     if irregular { 3.0 * band } else { band }
 }
 
 /// A strip under its weight, of 1 kg/m² and 1 N m; the load ρ t g L³/D is the acceleration.
-pub fn heavy_strip(rig: &Rig, meshes: &[usize], loads: core::ops::Range<usize>) -> Outcome {
+pub fn heavy_strip(rig: &Rig, meshes: &[usize], loads: Range<usize>) -> Outcome {
     let band = number("bending/heavy_strip/band");
     let mut all = Vec::new();
     for row in &rows("bending/heavy_strip")[loads] {
@@ -79,7 +91,8 @@ pub fn heavy_strip(rig: &Rig, meshes: &[usize], loads: core::ops::Range<usize>) 
                     (format!("{name}, load {}, {mesh}", row[0]), value, band)
                 });
             all.extend(refined([1, 2, 4], quantities, None, |factor| {
-                let strip = strip(1.0, 1.0 / SLENDERNESS, cells.map(|n| n * factor), irregular);
+                let strip =
+                    strip(1.0, 1.0 / SLENDERNESS, cells.map(|n| n * factor), irregular, false);
                 let scene = FilmScene {
                     gravity: Vector3::new(0.0, 0.0, -row[0]),
                     supports: vec![held(strip.clamped, "xyz")],
@@ -94,8 +107,36 @@ pub fn heavy_strip(rig: &Rig, meshes: &[usize], loads: core::ops::Range<usize>) 
 }
 
 /// A rigid plane without mass that pushes these nodes.
-fn pushed(nodes: &[u32], normal: Vector3<f64>, force: f64) -> FilmSupport {
+pub fn pushed(nodes: &[u32], normal: Vector3<f64>, force: f64) -> FilmSupport {
     on_plane(nodes.to_vec(), PlaneBody { normal, mass: 0.0, velocity: 0.0, force })
+}
+
+/// A strip whose ends are clamped to each other: a full circle, with energy 2 π² D w/L.
+pub fn circle(rig: &Rig, meshes: Range<usize>) -> Outcome {
+    let band = number("bending/circle/band");
+    let width = 1.0 / SLENDERNESS;
+    let mut all = Vec::new();
+    for (mesh, cells, irregular) in &STRIPS[meshes] {
+        let band = band_of(band, *irregular);
+        let quantities = [("height/L", 1.0 / PI), ("energy L/(D w)", 2.0 * PI * PI)]
+            .map(|(name, value)| (format!("{name}, {mesh}"), value, band));
+        all.extend(refined([1, 2, 4], quantities, None, |factor| {
+            let strip = strip(1.0, width, cells.map(|n| n * factor), *irregular, true);
+            // A circle that is pushed aside, and both ends along x.
+            let rolled = moved(strip.shell, |x| {
+                let turn = x.x.clamp(0.0, 1.0);
+                let (sin, cos) = libm::sincos(TAU * turn);
+                let aside = 0.05 * libm::sin(PI * turn) * libm::sin(PI * turn);
+                Vector3::new((sin / TAU) + x.x - turn + aside, x.y, (1.0 - cos) / TAU + aside)
+            });
+            let supports = vec![held([strip.clamped, strip.end].concat(), "xyz")];
+            let scene = FilmScene { supports, ..free_film(rolled, stiff(THINNESS)) };
+            let state = equilibrium(rig, &scene, None)?;
+            let highest = state.positions.z.iter().copied().fold(0.0, f64::max);
+            Ok([highest, state.strain_energy / width])
+        })?);
+    }
+    Ok(all)
 }
 
 /// A cantilever under a force across it at its end, which keeps its direction.
@@ -110,7 +151,7 @@ pub fn end_shear(rig: &Rig) -> Outcome {
         let quantities = [("-U", row[1]), ("W", row[2])]
             .map(|(name, value)| (format!("{name}, {} of the force", row[0]), value, band));
         refined([16, 32, 64], quantities, None, |columns| {
-            let strip = strip(length, width, [columns, columns / 8], false);
+            let strip = strip(length, width, [columns, columns / 8], false, false);
             let force = pushed(&strip.end, Vector3::z(), row[0] * largest);
             let supports = vec![held(strip.clamped, "xyz"), force];
             let state =
@@ -128,7 +169,7 @@ pub fn column(rig: &Rig) -> Outcome {
         let quantities = [("x/L", row[1]), ("y/L", row[2])]
             .map(|(name, value)| (format!("{name} at {} Euler loads", row[0]), value, band));
         refined([16, 32, 64], quantities, None, |columns| {
-            let strip = strip(1.0, width, [columns, columns / 4], false);
+            let strip = strip(1.0, width, [columns, columns / 4], false, false);
             let start =
                 moved(strip.shell.clone(), |x| x + Vector3::z() * (0.3 * x.x.max(0.0) * x.x));
             let force = pushed(&strip.end, -Vector3::x(), row[0] * PI * PI / 4.0 * width);

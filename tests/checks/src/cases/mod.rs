@@ -29,6 +29,7 @@ mod contact_impacts;
 mod contact_plates;
 mod contact_relaxed;
 mod contact_rig;
+mod creases;
 mod damping;
 pub(crate) mod drum;
 pub(crate) mod gas;
@@ -43,6 +44,7 @@ mod static_end_state;
 mod static_shells;
 mod static_wrinkling;
 mod storeys_model;
+mod wrinkles;
 
 pub use rig::Rig;
 pub use row::Row;
@@ -117,9 +119,16 @@ pub const CASES: &[Case] = &[
     long("heavy_strip_meshes", |rig| bending::heavy_strip(rig, &[1, 2], 0..2)),
     long("heavy_strip_heaviest", |rig| bending::heavy_strip(rig, &[0, 1, 2], 2..3)),
     quick("end_shear", bending::end_shear),
+    quick("circle", |rig| bending::circle(rig, 0..1)),
+    long("circle_meshes", |rig| bending::circle(rig, 1..3)),
     quick("column", bending::column),
     quick("clamped_plate", bending::clamped_plate),
     quick("plate_frequency", bending::plate_frequency),
+    quick("opened_crease", |rig| creases::opened_crease(rig, 0..1)),
+    long("opened_crease_meshes", |rig| creases::opened_crease(rig, 1..3)),
+    quick("creased_panels", |rig| creases::creased_panels(rig, 0..1)),
+    long("creased_panels_meshes", |rig| creases::creased_panels(rig, 1..3)),
+    long("wrinkles", wrinkles::stretched_sheet),
     quick("stack", contact_plates::stack_of_sheets),
     quick("tube_between_plates", contact_plates::tube_between_plates),
     quick("films_at_50_m_s", contact_impacts::films_at_50_m_s),
