@@ -47,4 +47,4 @@ pub mod system;
 
 /// Version of the physics: part of every job id. It increases with every change of the solver that changes
 /// a result.
-pub const PHYSICS_VERSION: u32 = 6;
+pub const PHYSICS_VERSION: u32 = 7;

@@ -130,8 +130,7 @@ impl Explicit {
             impulses: Impulses::new(),
         };
         let contacts = &state.contact.contacts;
-        let friction = &mut accounting.friction_dissipation;
-        apply_friction(contact_model, contacts, &mut step, kick_length, friction);
+        let friction = apply_friction(contact_model, contacts, &mut step, kick_length);
         // Friction can make a node faster.
         let current = if contact_model.friction > 0.0 {
             prepared.max(largest_speed(set, step.velocities) * length)
@@ -145,7 +144,8 @@ impl Explicit {
         if let Err(unresolved) = resolved {
             return Err(failure(state, AuditKind::Passages, &unresolved.message()));
         }
-        accounting.collision_dissipation += step.dissipation();
+        accounting.friction_dissipation += step.dissipation(&friction);
+        accounting.collision_dissipation += step.dissipation(&step.impulses);
         if let Some(contact) = &self.workspace.contact {
             self.motion.accounting.broad_phase_rebuilds = contact.progress.rebuilds;
         }

@@ -90,6 +90,23 @@ pub(super) fn every_step(rig: &Rig, subdivisions: u32) -> Outcome {
     Ok(judged)
 }
 
+/// Residual gas alone, with friction in film that bears compression: nodes stick and slide at several contacts at a
+/// time.
+pub(super) fn friction(rig: &Rig) -> Outcome {
+    let mut scene = paper::capsule(5, 0.3);
+    let [coefficient, mass, dissipation, band] =
+        entry("capsule_friction", ["coefficient", "mass", "dissipation", "ledger_band"]);
+    (scene.gas.windows, scene.gas.initial_mass) = (Vec::new(), mass);
+    scene.film.compression = 1.0;
+    let contact = FilmContact { friction: coefficient, ..FilmContact::default() };
+    let (run, deployment) = deploy(rig, &scene, contact)?;
+    let dissipated = run.film.view().accounting().friction_dissipation;
+    let mut judged =
+        vec![Row::at_least("energy dissipated by friction, J", dissipated, dissipation)];
+    judged.extend(record(&run, &deployment).rows("", band));
+    Ok(judged)
+}
+
 /// A row whose value must lie between the reference numbers `entry/from` and `entry/to`.
 fn between(quantity: &str, value: f64, entry: &str) -> Row {
     let [from, to] = ["from", "to"].map(|key| number(&format!("capsule_deployed/{entry}/{key}")));

@@ -136,6 +136,7 @@ pub const CASES: &[Case] = &[
     long("squeezed_bag_stiff", |rig| contact_impacts::squeezed_bag(rig, &[0.1, 1.0])),
     quick("friction", contact_impacts::friction),
     quick("adhesion", contact_impacts::adhesion),
+    quick("capsule_friction", contact_capsule::friction),
     quick("capsule_every_step", |rig| contact_capsule::every_step(rig, 2)),
     long("capsule_every_step_fine", |rig| contact_capsule::every_step(rig, 4)),
     quick("capsule_deployed", |rig| contact_capsule::deployed(rig, 5)),

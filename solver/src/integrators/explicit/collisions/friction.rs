@@ -6,26 +6,26 @@
 //!
 //! Symbols: `w_i` weights of the closest points, F normal force of the pair, N; h duration of the kick,
 //! s; m reduced mass of the pair, kg. An impulse never reverses the sliding, so friction dissipates
-//! energy at any step. The dissipation is the trapezoid −½ J·(v⁻ + v⁺).
+//! energy at any step. Like those of collisions, the impulses are counted when the step has all of them:
+//! [`CollisionStep::dissipation`].
 
-use super::step::CollisionStep;
+use super::step::{CollisionStep, Impulses};
 use crate::collision::contact::distance::Closest;
 use crate::collision::contact::pair::vectors_of;
 use crate::collision::contact::{Contact, ContactModel};
 
-/// Reduces the tangential velocities of contacts after a kick of `kick_length` (s). The dissipated
-/// energy is added to `dissipation`, J.
+/// Reduces the tangential velocities of contacts after a kick of `kick_length` (s), and gives the impulses.
 pub(in crate::integrators::explicit) fn apply_friction(
     contact_model: &ContactModel,
     contacts: &[Contact],
     step: &mut CollisionStep<'_>,
     kick_length: f64,
-    dissipation: &mut f64,
-) {
+) -> Impulses {
+    let mut impulses = Impulses::new();
     if contact_model.friction == 0.0 {
-        return;
+        return impulses;
     }
-    let (film, before) = (step.film, step.velocities_before_kick);
+    let film = step.film;
     for contact in contacts {
         let nodes = contact.pair.nodes(&contact_model.mesh.topology);
         let Closest { weights, between, squared } =
@@ -52,10 +52,11 @@ pub(in crate::integrators::explicit) fn apply_friction(
         for (node, weight) in nodes.iter().zip(weights) {
             let node = *node as usize;
             let projector = step.supports.projector(node);
-            let change = projector * impulse * (weight * film.inverse_mass[node]);
-            step.velocities.set(node, step.velocities.get(node) + change);
-            let sum = before.get(node) + step.velocities.get(node);
-            *dissipation -= 0.5 * film.mass[node] * change.dot(&sum);
+            let impulse = projector * impulse * weight;
+            let velocity = step.velocities.get(node);
+            step.velocities.set(node, velocity + impulse * film.inverse_mass[node]);
+            impulses.push((node, impulse));
         }
     }
+    impulses
 }

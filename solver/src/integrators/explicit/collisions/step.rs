@@ -46,13 +46,13 @@ pub struct CollisionStep<'a> {
 }
 
 impl CollisionStep<'_> {
-    /// Energy that the impulses dissipate, J.
-    pub fn dissipation(&self) -> f64 {
+    /// Energy that these impulses dissipate, J, when the step has all of them.
+    pub fn dissipation(&self, impulses: &Impulses) -> f64 {
         let (before, after) = (self.velocities_before_kick, &*self.velocities);
         let work = |(node, impulse): &(usize, Vector3<f64>)| {
             impulse.dot(&(before.get(*node) + after.get(*node)))
         };
-        -0.5 * self.impulses.iter().map(work).sum::<f64>()
+        -0.5 * impulses.iter().map(work).sum::<f64>()
     }
 
     /// Gives a pair the speed of separation u (m/s) along the line between its closest points at the
