@@ -55,6 +55,31 @@ fn a_plan_counts_the_points_that_an_integrator_refuses_and_they_end_so() {
 }
 
 #[test]
+fn a_plan_says_whether_bending_changes_results_and_whether_creases_would_yield() {
+    let planned = |film: Value, creases: Value, thickness: Value| {
+        let mut study = study();
+        study["gas"] = json!({"residual_gas_mass": "0.05 g"});
+        study["strategies"] = json!({"residual": {"inflow": []}});
+        study["strategy"] = json!("residual");
+        (study["film"], study["creases"]) = (film, creases);
+        study["grid"] = json!({"N": [6], "thickness": thickness});
+        stderr(&TestFolder::new(&study).run(&["plan", "grid.json"]))
+    };
+    let [thin, both] = [json!(["25.4 um"]), json!(["25.4 um", "200 um"])];
+    let bent = json!({"compression": 1, "bending": true});
+    let (needed, idle) = ("bending may change the results of 1 of 2", "bending changes no result");
+    let said = planned(json!({}), json!({}), both.clone());
+    assert!(said.contains(needed) && !said.contains(idle), "{said}");
+    let said = planned(json!({}), json!({}), thin.clone());
+    assert!(!said.contains("bending"), "{said}");
+    let said = planned(bent.clone(), json!({"length_scale": "5 mm"}), both);
+    assert!(!said.contains(needed) && !said.contains(idle), "{said}");
+    assert!(said.contains("film by up to 6.283 %; polymer film yields at 3 %"), "{said}");
+    let said = planned(bent, json!({"length_scale": "5 mm"}), thin);
+    assert!(said.contains(idle) && !said.contains("yields"), "{said}");
+}
+
+#[test]
 fn a_film_study_gives_sound_rows_and_the_same_bits_on_any_threads() {
     let folder = TestFolder::new(&study());
     let planned = stderr(&folder.run(&["plan", "grid.json"]));

@@ -3,8 +3,10 @@
 
 use std::collections::BTreeSet;
 
+use billow_solver::geometry::fold::FoldPattern;
 use billow_solver::integrators::{self, Refusal};
-use billow_solver::scene::{Film, ModelKind};
+use billow_solver::scene::inflow::Schedule;
+use billow_solver::scene::{Film, ModelKind, Scene};
 
 use crate::accuracy::{MeshErrors, Method, choice};
 use crate::input::keys::numerical::{MESH_PARAMETER, SEED};
@@ -72,11 +74,13 @@ fn of_points(study: &Study) -> Vec<String> {
     };
     if film(|film| film.compression > 0.0) {
         lines.push(
-            "note: film.compression above 0 folds more easily on finer meshes, with film.bending as without it: a \
-             capsule that stalls may deploy on a finer mesh; compare design.subdivisions 8, 12 and 16 and several seeds"
+            "note: film.compression above 0 folds more easily on finer meshes: a capsule that stalls may deploy on a \
+             finer mesh; compare design.subdivisions 8, 12 and 16 and several seeds"
                 .to_owned(),
         );
     }
+    lines.extend(need_of_bending(study));
+    lines.extend(yielding_creases(study));
     if film(|film| film.compression < 1.0 && film.bending) {
         lines.push(
             "note: film.bending with film.compression below 1: the tension field already replaces the wrinkles that \
@@ -118,6 +122,69 @@ fn below_ambient(study: &Study) -> Option<String> {
              the capsule together; residual_gas ambient fills the folds at ambient pressure",
             study.points().len(),
             brief_number(smallest)
+        )
+    })
+}
+
+/// Length over which the gas bends film, over the bottom radius, from which on bending changes results. Measured:
+/// none at 0.035, some at 0.07 (`docs/experiments.md`, Bending).
+const LONG_BEND: f64 = 0.05;
+
+/// Length over which all gas of a scene bends its film in the erected capsule, (D/p)^(1/3), m, and over the bottom radius.
+fn bend(scene: &Scene) -> Option<[f64; 2]> {
+    let pattern = FoldPattern::new(&scene.design).ok()?;
+    let gas = &scene.gas;
+    let mass = gas.initial_mass + Schedule::new(&gas.windows).mass_until(scene.solver.end_time);
+    let pressure = mass * gas.species.gas_constant * scene.film.temperature
+        / pattern.erected_volume()
+        - gas.ambient_pressure;
+    let length = libm::cbrt(scene.film.bending_stiffness() / pressure);
+    (pressure > 0.0).then(|| [length, length / pattern.ring_radius(0)])
+}
+
+/// Whether bending may change the results of film, or not.
+fn need_of_bending(study: &Study) -> Option<String> {
+    let scenes = study.points().iter().map(|point| &point.job.scene);
+    let film = scenes.filter(|scene| scene.solver.model == ModelKind::Film);
+    let bends: Vec<_> = film.filter_map(|scene| Some((&scene.film, bend(scene)?))).collect();
+    let (_, [length, over_radius]) = bends.iter().max_by(|a, b| a.1[1].total_cmp(&b.1[1]))?;
+    let size = format!(
+        "(D/p)^(1/3) is up to {} mm, {} % of the bottom radius; from {} % on it does",
+        brief_number(1e3 * length),
+        brief_number(100.0 * over_radius),
+        brief_number(100.0 * LONG_BEND)
+    );
+    let without = bends.iter().filter(|(film, bend)| bend[1] >= LONG_BEND && !film.bending).count();
+    if without > 0 {
+        let of = study.points().len();
+        return Some(format!(
+            "note: bending may change the results of {without} of {of} points: {size}; set film.compression 1 and \
+             film.bending true"
+        ));
+    }
+    let stands_in = bends.iter().any(|(film, _)| film.compression > 0.0);
+    (stands_in && *over_radius < LONG_BEND).then(|| {
+        format!("note: film.bending changes no result here by more than the seed does: {size}")
+    })
+}
+
+/// Strain of the surface of film at which polymer film yields: that of Kapton at 69 `MPa`.
+const YIELD_STRAIN: f64 = 0.03;
+
+/// A note on creases that would yield: turned by 180 degrees they strain the surface of the film by π t/(2 L*).
+fn yielding_creases(study: &Study) -> Option<String> {
+    let strain = |point: &Point| {
+        let film = &point.job.scene.film;
+        film.creases
+            .map(|creases| 0.5 * core::f64::consts::PI * film.thickness / creases.length_scale)
+    };
+    let largest = study.points().iter().filter_map(strain).fold(0.0, f64::max);
+    (largest > YIELD_STRAIN).then(|| {
+        format!(
+            "note: creases turned by 180 deg strain the surface of the film by up to {} %; polymer film yields at {} %, \
+             creases do not: a longer creases.length_scale",
+            brief_number(100.0 * largest),
+            brief_number(100.0 * YIELD_STRAIN)
         )
     })
 }
