@@ -7,7 +7,7 @@
 # make pareto   work-precision diagrams: studies/pareto.json (three quarters of an hour on two cores) and the scenes with an
 #               exact answer, their tables and pictures in results/pareto/published
 # make stability  where each method fails: studies/stability.json (a quarter of an hour on two cores), its maps and pictures in results/stability/published
-# make validate every reference case, with its error and its tolerance: a quarter of an hour on one core
+# make validate every reference case, with its error and its tolerance: twenty minutes on one core
 # make bench    what billow costs on this machine, a few minutes
 # make slurm    a study on a Slurm cluster of two nodes on this machine, with accidents, with the program of make dist (root only)
 # make dist     a self-contained program with licences, completions and man page, as an archive in target/dist

@@ -57,6 +57,15 @@ job=$("$billow" table "$results/paper-mesh" --format csv --columns job --where \
   "strategy == 'residual' and bending == true and subdivisions == 8" | sed -n 2p)
 "$billow" frames "$job" "$results/paper-mesh" -q --count 4 --out "$out/frames-bending-8.png" > /dev/null
 
+# Freed by a later inflow: ten minutes.
+"$billow" run studies/paper-mesh.json --results "$results/paper-freed" -q --set 'subdivisions=[12]' \
+  --set 'bending=[true]' --set 'grid.zip=[{"strategy": ["rapid"], "residual_gas_mass": ["0.05 g"],
+  "solver.end_time": ["8.5 s"]}]' > /dev/null
+job=$("$billow" table "$results/paper-freed" --format csv --columns job | sed -n 2p)
+"$billow" frames "$job" "$results/paper-freed" -q --times '0.2,0.9,1.5,8' \
+  --title 'Residual gas, then 1 g/s from 1 s to 8 s; compression 1 with bending, n 12' \
+  --out "$out/frames-bending-freed.png" > /dev/null
+
 # Filmstrips: strategy and compression fraction.
 while read -r strategy compression; do
   job=$("$billow" table "$results/paper" --format csv --columns job --where \

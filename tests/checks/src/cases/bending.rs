@@ -19,7 +19,7 @@ pub const THINNESS: f64 = 1.0 / 500.0;
 pub const PLATE_THINNESS: f64 = 1.0 / 50.0;
 /// Displacement of the inner nodes of an irregular mesh over its cells. Chosen as in the comparison of bending models
 /// (`docs/experiments.md`).
-const IRREGULAR: f64 = 0.28;
+pub const IRREGULAR: f64 = 0.28;
 
 /// A strip along x from 0 to its length.
 pub struct Strip {
@@ -44,20 +44,32 @@ pub fn strip(
     let shell = moved(shell, |x| x - Vector3::new(cell, 0.0, 0.0));
     let clamped = nodes_where(&shell, |x| x.x < 1e-9 * length);
     let end = nodes_where(&shell, |x| x.x > length * (1.0 - 1e-9));
-    let random = pseudo_random(shell.positions.len(), 11);
-    let mut positions = shell.positions.clone();
     let inner = |x: f64, size: f64| x > 1e-9 * size && x < size * (1.0 - 1e-9);
+    let amplitude = if irregular { IRREGULAR } else { 0.0 };
+    let sizes = [amplitude * cell, amplitude * width / f64::from(rows)];
+    let shell = uneven(shell, sizes, 11, |x| inner(x.x, length) && inner(x.y, width));
+    Strip { shell, clamped, end }
+}
+
+/// Flat film whose inner nodes are moved by up to these lengths (m) along x and y.
+pub fn uneven(
+    shell: Shell,
+    sizes: [f64; 2],
+    seed: u64,
+    inner: impl Fn(&Vector3<f64>) -> bool,
+) -> Shell {
+    let random = pseudo_random(shell.positions.len(), seed);
+    let mut positions = shell.positions;
     for (position, random) in positions.iter_mut().zip(random) {
-        if irregular && inner(position.x, length) && inner(position.y, width) {
-            position.x += IRREGULAR * cell * random.x;
-            position.y += IRREGULAR * width / f64::from(rows) * random.y;
+        if inner(position) {
+            *position += Vector3::new(sizes[0] * random.x, sizes[1] * random.y, 0.0);
         }
     }
-    Strip { shell: flat(positions, shell.triangles), clamped, end }
+    flat(positions, shell.triangles)
 }
 
 /// Film that is flat and free of stress at these positions (m) in the plane z = 0.
-pub fn flat(positions: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>) -> Shell {
+fn flat(positions: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>) -> Shell {
     let reference = triangles.iter().map(|t| t.map(|node| positions[node as usize].xy())).collect();
     Shell { positions, triangles, reference, ..Shell::default() }
 }
@@ -190,14 +202,8 @@ fn plate(cells: u32, irregular: bool, alternating: bool) -> (Shell, Vec<u32>) {
         moved(make(cells + 2, cells + 2, size, size), |x| x - Vector3::new(cell, cell, 0.0));
     let inner = |x: f64| x > 1e-9 && x < 1.0 - 1e-9;
     let clamped = nodes_where(&shell, |x| !inner(x.x) || !inner(x.y));
-    let random = pseudo_random(shell.positions.len(), 5);
-    let mut positions = shell.positions;
-    for (position, random) in positions.iter_mut().zip(random) {
-        if irregular && inner(position.x) && inner(position.y) {
-            *position += IRREGULAR * cell * Vector3::new(random.x, random.y, 0.0);
-        }
-    }
-    (flat(positions, shell.triangles), clamped)
+    let size = if irregular { IRREGULAR * cell } else { 0.0 };
+    (uneven(shell, [size; 2], 5, |x| inner(x.x) && inner(x.y)), clamped)
 }
 
 /// The largest deflection of a clamped square plate under its weight, far below its thickness; `fine`: on structured

@@ -12,7 +12,8 @@ use billow_solver::scene::Creases;
 use billow_solver::statics::StaticSolution;
 
 use super::bending::{
-    PLATE_THINNESS, SLENDERNESS, STRIPS, Strip, THINNESS, band_of, flat, pushed, stiff, strip,
+    IRREGULAR, PLATE_THINNESS, SLENDERNESS, STRIPS, Strip, THINNESS, band_of, pushed, stiff, strip,
+    uneven,
 };
 use super::prelude::*;
 
@@ -80,18 +81,11 @@ fn roof(fold_angle: f64, [columns, rows]: [u32; 2], irregular: bool) -> Roof {
     let flat_grid = moved(grid(2 * columns, rows, 2.0, width), |x| x - Vector3::x());
     let line = |at: f64| nodes_where(&flat_grid, |x| (x.x.abs() - at).abs() < 1e-9);
     let (crease, floor) = (line(0.0), line(1.0));
-    let free = nodes_where(&flat_grid, |x| {
-        let inside = |x: f64, size: f64| x > 1e-9 && x < size - 1e-9;
-        inside(x.x.abs(), 1.0) && inside(x.y, width)
-    });
-    let mut positions = flat_grid.positions.clone();
-    let random = pseudo_random(positions.len(), 3);
-    for node in free.iter().filter(|_| irregular).map(|node| *node as usize) {
-        positions[node].x += 0.28 / f64::from(columns) * random[node].x;
-        positions[node].y += 0.28 * width / f64::from(rows) * random[node].y;
-    }
     let folds = edges_of(&flat_grid, &crease);
-    let shell = flat(positions, flat_grid.triangles);
+    let inside = |x: f64, size: f64| x > 1e-9 && x < size - 1e-9;
+    let amplitude = if irregular { IRREGULAR } else { 0.0 };
+    let sizes = [amplitude / f64::from(columns), amplitude * width / f64::from(rows)];
+    let shell = uneven(flat_grid, sizes, 3, |x| inside(x.x.abs(), 1.0) && inside(x.y, width));
     let (sin, cos) = libm::sincos(0.5 * fold_angle);
     let shell = moved(shell, |x| Vector3::new(x.x * cos, x.y, (1.0 - x.x.abs()) * sin));
     // Node i of row j, and the last node of a row.
@@ -117,12 +111,13 @@ fn roof(fold_angle: f64, [columns, rows]: [u32; 2], irregular: bool) -> Roof {
 pub fn creased_panels(rig: &Rig, meshes: Range<usize>) -> Outcome {
     let [rest_angle, length_scale, band] =
         entry("bending/creased_panels", ["rest_angle_degrees", "length_scale", "band"]);
-    let table = rows("bending/creased_panels");
+    let table: [Vec<f64>; 3] =
+        rows("bending/creased_panels").try_into().map_err(|_| "three pressures expected")?;
     let mut all = Vec::new();
     for (mesh, [columns, rows], irregular) in &STRIPS[meshes] {
         let band = band_of(band, *irregular);
         let quantities: [_; 3] = core::array::from_fn(|row| {
-            let name = format!("angle, degrees, p l³/D {:.3}, {mesh}", table[row][0]);
+            let name = format!("2 asin(h/l), degrees, p l³/D {:.3}, {mesh}", table[row][0]);
             (name, table[row][1], band)
         });
         all.extend(refined([1, 2, 4], quantities, None, |factor| {

@@ -5,9 +5,8 @@
 //! ```
 //!
 //! Symbols: `w_i` weights of the closest points, F normal force of the pair, N; h duration of the kick,
-//! s; m reduced mass of the pair, kg. An impulse never reverses the sliding, so friction dissipates
-//! energy at any step. Like those of collisions, the impulses are counted when the step has all of them:
-//! [`CollisionStep::dissipation`].
+//! s; m reduced mass of the pair, kg. An impulse never reverses the sliding. Like those of collisions, the
+//! impulses are counted when the step has all of them: [`CollisionStep::dissipation`].
 
 use super::step::{CollisionStep, Impulses};
 use crate::collision::contact::distance::Closest;
