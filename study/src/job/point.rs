@@ -66,6 +66,8 @@ pub struct Solved {
     pub top_radius: f64,
     /// Erected height, m.
     pub height: f64,
+    /// Volume of the erected cone, m³.
+    pub erected_volume: f64,
 }
 
 impl Solved {
@@ -76,6 +78,7 @@ impl Solved {
             half_angle: pattern.half_angle,
             top_radius: pattern.top_radius,
             height: pattern.height,
+            erected_volume: pattern.erected_volume(),
         }
     }
 }

@@ -1,13 +1,10 @@
 //! Warnings about the values of a study, and notes on its results, on stderr: limits of the models, and
 //! keys that a model ignores.
 
-use core::f64::consts::PI;
 use std::collections::BTreeSet;
 
-use billow_solver::geometry::fold::FoldPattern;
 use billow_solver::integrators::{self, Refusal};
-use billow_solver::scene::inflow::Schedule;
-use billow_solver::scene::{Film, ModelKind, Scene};
+use billow_solver::scene::{Film, ModelKind};
 
 use crate::accuracy::{MeshErrors, Method, choice};
 use crate::input::keys::numerical::{MESH_PARAMETER, SEED};
@@ -16,6 +13,8 @@ use crate::input::value::{Value, brief_number};
 use crate::job::point::Point;
 use crate::study::ground::pressure_below_ambient;
 use crate::study::{Study, features};
+
+mod bending;
 
 /// Prints the warnings about values of the study: before anything runs.
 pub fn print_warnings(study: &Study) {
@@ -80,8 +79,8 @@ fn of_points(study: &Study) -> Vec<String> {
                 .to_owned(),
         );
     }
-    lines.extend(need_of_bending(study));
-    lines.extend(yielding_creases(study));
+    lines.extend(bending::need(study));
+    lines.extend(bending::yielding_creases(study));
     if film(|film| film.compression < 1.0 && film.bending) {
         lines.push(
             "note: film.bending with film.compression below 1: the tension field already replaces the wrinkles that \
@@ -123,84 +122,6 @@ fn below_ambient(study: &Study) -> Option<String> {
              the capsule together; residual_gas ambient fills the folds at ambient pressure",
             study.points().len(),
             brief_number(smallest)
-        )
-    })
-}
-
-/// Length over which gas bends film, over the bottom radius, from which on bending may change results. Between what was
-/// measured: nothing beyond the seed up to 0.035, up to a tenth of the volume from 0.07 on (`docs/experiments.md`).
-const LONG_BEND: f64 = 0.05;
-
-/// The largest length over which the gas of a scene bends its film while no gas flows in, (D/p)^(1/3), m, and over the
-/// bottom radius. `None` without gas, where the ambient pressure is higher, or without a pattern.
-fn bend(scene: &Scene) -> Option<[f64; 2]> {
-    let pattern = FoldPattern::new(&scene.design).ok()?;
-    let (gas, end) = (&scene.gas, scene.solver.end_time);
-    let schedule = Schedule::new(&gas.windows);
-    let times = schedule.change_times().iter().copied().filter(|time| *time > 0.0 && *time < end);
-    let masses = times.chain([end]).map(|time| gas.initial_mass + schedule.mass_until(time));
-    let mass = masses.filter(|mass| *mass > 0.0).reduce(f64::min)?;
-    let temperature = scene.film.temperature;
-    let pressure = mass * gas.species.gas_constant * temperature / pattern.erected_volume()
-        - gas.ambient_pressure;
-    let length = libm::cbrt(scene.film.bending_stiffness() / pressure);
-    (pressure > 0.0).then(|| [length, length / pattern.ring_radius(0)])
-}
-
-/// Whether bending may change the results of film, or not.
-fn need_of_bending(study: &Study) -> Option<String> {
-    let scenes = study.points().iter().map(|point| &point.job.scene);
-    let film: Vec<_> = scenes
-        .filter(|scene| scene.solver.model == ModelKind::Film)
-        .map(|scene| (&scene.film, bend(scene)))
-        .collect();
-    let longest = |chosen: &dyn Fn(&Film, f64) -> bool| {
-        let bends =
-            film.iter().filter_map(|(film, bend)| bend.filter(|bend| chosen(film, bend[1])));
-        bends.max_by(|a, b| a[1].total_cmp(&b[1])).map(|[length, over_radius]| {
-            format!(
-                "(D/p)^(1/3) is up to {} mm, {} % of the bottom radius; in the paper's capsule bending changed nothing \
-                 beyond the seed up to 3.5 %, and the volume by up to a tenth from 7 % on",
-                brief_number(1e3 * length),
-                brief_number(100.0 * over_radius)
-            )
-        })
-    };
-    let missing = |film: &Film, bend: f64| bend >= LONG_BEND && !film.bending;
-    if let Some(size) = longest(&missing) {
-        return Some(format!(
-            "note: bending may change results: {size}; film.bending needs film.compression 1"
-        ));
-    }
-    let short = |(film, bend): &(&Film, Option<[f64; 2]>)| {
-        film.compression < 1.0 || bend.is_some_and(|bend| bend[1] < LONG_BEND)
-    };
-    let size = longest(&|film, _| film.compression >= 1.0).filter(|_| film.iter().all(short))?;
-    Some(format!("note: film.bending is not needed: {size}"))
-}
-
-/// Stress at which polymer film yields, Pa: that of Kapton.
-const YIELD_STRESS: f64 = 69e6;
-
-/// A note on creases that would yield: turned by θ they stress the surface of the film by E t θ/(2 L*).
-fn yielding_creases(study: &Study) -> Option<String> {
-    let scenes = study.points().iter().map(|point| &point.job.scene);
-    let stress = |scene: &Scene| {
-        let film = &scene.film;
-        film.creases.map_or(0.0, |creases| {
-            let rest = creases.rest_angle.unwrap_or(PI);
-            let turn = rest.max(PI - rest);
-            0.5 * film.youngs_modulus * film.thickness * turn / creases.length_scale
-        })
-    };
-    let film = scenes.filter(|scene| scene.solver.model == ModelKind::Film);
-    let largest = film.map(|scene| stress(scene)).fold(0.0, f64::max);
-    (largest > YIELD_STRESS).then(|| {
-        format!(
-            "note: creases stress the surface of the film by up to {} MPa; Kapton yields at {} MPa, and creases here do \
-             not yield: choose a longer creases.length_scale",
-            brief_number(1e-6 * largest),
-            brief_number(1e-6 * YIELD_STRESS)
         )
     })
 }
