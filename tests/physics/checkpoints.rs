@@ -48,8 +48,8 @@ fn bits(deployment: &Deployment) -> String {
     format!("{deployment:?}")
 }
 
-/// The paper's capsule at n 2: packed until 8 ms, inflow windows, frames, contact with friction, bending and
-/// creases.
+/// The paper's capsule at n 2: packed until 8 ms, inflow windows, frames, contact with friction, bending, creases and
+/// yield.
 fn film() -> Scene {
     let mut scene = paper::capsule(2, 0.03);
     scene.solver.model = ModelKind::Film;
@@ -58,6 +58,7 @@ fn film() -> Scene {
     scene.film.compression = 1.0;
     scene.film.bending = true;
     scene.film.creases = Some(Creases { length_scale: 0.02, rest_angle: None });
+    scene.film.yield_moment = Some(1e-6);
     scene.contact.friction = 0.2;
     scene.outputs.sample_interval = 1e-3;
     scene.outputs.frames = 4;
@@ -96,6 +97,9 @@ fn a_run_stopped_anywhere_and_resumed_gives_the_same_bits() {
     let scene = film();
     let whole = solve(&scene, &mut Unobserved);
     assert!(whole.history.column("contact_energy").iter().any(|energy| *energy > 0.0));
+    let mut elastic = scene.clone();
+    elastic.film.yield_moment = None;
+    assert!(bits(&solve(&elastic, &mut Unobserved)) != bits(&whole), "nothing yields");
     // Packed, within an interval, during inflow, near the end.
     for after in [1, 37, whole.steps / 4, whole.steps / 2 + 3, whole.steps - 60] {
         let mut first = Pausing::new(1, Some(after));

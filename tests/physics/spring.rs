@@ -43,12 +43,12 @@ impl Spring {
 }
 
 impl EnergyTerm for Spring {
-    fn energy(&self, positions: &Field) -> f64 {
+    fn energy(&self, positions: &Field, _: &[f64]) -> f64 {
         let extension = self.between(positions).norm() - self.rest_length;
         0.5 * self.stiffness * extension * extension
     }
 
-    fn add_forces(&self, positions: &Field, forces: &mut Field) {
+    fn add_forces(&self, positions: &Field, _: &[f64], forces: &mut Field) {
         let between = self.between(positions);
         let length = between.norm();
         let pull = between * (self.stiffness * (length - self.rest_length) / length);
@@ -62,7 +62,7 @@ impl EnergyTerm for Spring {
         vec![self.nodes.to_vec()]
     }
 
-    fn stiffness(&self, positions: &Field, patches: &mut [DMatrix<f64>]) {
+    fn stiffness(&self, positions: &Field, _: &[f64], patches: &mut [DMatrix<f64>]) {
         let block = self.block(positions);
         for (corners, sign) in [([0, 0], 1.0), ([1, 1], 1.0), ([0, 1], -1.0), ([1, 0], -1.0)] {
             let [i, j] = corners.map(|corner| 3 * corner);
@@ -155,7 +155,7 @@ fn two_pieces_on_a_spring_swing_with_the_period_of_two_bodies() {
             crossings.push(at(sample - 1) + part * (at(sample) - at(sample - 1)));
         }
         let spring = Spring { nodes, stiffness, rest_length: DISTANCE };
-        peak = peak.max(spring.energy(&film.view().state.positions));
+        peak = peak.max(spring.energy(&film.view().state.positions, &[]));
         extensions.push(now);
         series.push(film.view().ledger());
     }

@@ -75,6 +75,9 @@ fn a_plan_says_whether_bending_changes_results_and_whether_creases_would_yield()
     let said = planned(bent.clone(), json!({"length_scale": "5 mm"}), both);
     assert!(!said.contains(needed) && !said.contains(idle), "{said}");
     assert!(said.contains("film by up to 216.8 MPa; Kapton yields at 69 MPa"), "{said}");
+    let yields = json!({"compression": 1, "bending": true, "yield_moment": "0.7 N"});
+    let said = planned(yields, json!({"length_scale": "5 mm"}), json!(["200 um"]));
+    assert!(!said.contains("Kapton"), "{said}");
     let said = planned(bent, json!({"length_scale": "5 mm"}), thin);
     assert!(said.contains(idle) && !said.contains("yields"), "{said}");
 }

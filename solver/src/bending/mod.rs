@@ -25,6 +25,14 @@
 //! t_T + t_T' + m/(k l) = θ − θ̄        k = D/L*, l its length, θ̄ its rest angle
 //! ```
 //!
+//! Film and creases may yield ([`Film::yield_moment`], M a metre): no edge of length l bears more than M l. What an edge
+//! has yielded, p, is part of the state of the film, and dissipates the work of its moment:
+//!
+//! ```text
+//! Ĉ m = u − ū − p        |m| ≤ M l        ṗ m ≥ 0, and 0 where |m| < M l
+//! p_e ← p_e + sgn(m_e) (|m_e| − M l_e)/k_e    until it holds; k_e: upper bound of Π over ½ (u − ū)²
+//! ```
+//!
 //! An element that is held at all its nodes does not bend: film beside it is clamped. Beyond
 //! [`hinges::MAX_SMOOTH_TURN`] the turn grows in proportion to θ.
 
@@ -35,7 +43,7 @@ use nalgebra::{DMatrix, SVector, Vector3};
 use crate::factorisation::constant::{ConstantFactor, Work};
 use crate::geometry::field::Field;
 use crate::geometry::shell::Shell;
-use crate::mechanics::energy_term::{EnergyTerm, Prepared};
+use crate::mechanics::energy_term::{EnergyTerm, Prepared, Yielding};
 use crate::mechanics::film_model::FilmModel;
 use crate::platform::simd::{InstructionSet, NodeSum};
 use crate::scene::Film;
@@ -54,6 +62,8 @@ pub struct Bending {
     compliance: ConstantFactor,
     /// Upper bound of the energy over ½ (u − ū)² at each hinge, N m.
     stiffness: Vec<f64>,
+    /// Largest moment of each hinge, N m; empty for film that does not yield.
+    yield_moments: Vec<f64>,
     /// Upper bound of ω² of the film's masses, rad²/s².
     frequency_squared: f64,
     instruction_set: InstructionSet,
@@ -65,7 +75,7 @@ pub struct Bending {
 struct Scratch {
     /// Shape of the hinges, block by block.
     blocks: Vec<HingeBlock>,
-    /// u − ū of each hinge.
+    /// u − ū of each hinge, less what it has yielded.
     turns: Vec<f64>,
     /// Of the solution for moments.
     work: Work,
@@ -104,17 +114,31 @@ impl Bending {
         let (matrix, stiffness) = compliance::assembled(model, &hinges, &rigid, crease_stiffness);
         let compliance = ConstantFactor::new(&matrix, &compliance::middles(&hinges, shell));
         scratch.sums = vec![NodeSum::default(); model.nodes()];
+        let yield_moments = film.yield_moment.map_or_else(Vec::new, |moment| {
+            hinges.lengths.iter().map(|length| moment * length).collect()
+        });
         let frequency_squared = frequency_squared(&hinges, &stiffness, &model.mass);
         let scratch = Mutex::new(scratch);
-        Self { hinges, compliance, stiffness, frequency_squared, instruction_set, scratch }
+        Self {
+            hinges,
+            compliance,
+            stiffness,
+            yield_moments,
+            frequency_squared,
+            instruction_set,
+            scratch,
+        }
     }
 
-    /// Computes the shapes of the hinges and u − ū at these positions (m).
-    fn measured(&self, positions: &Field) -> MutexGuard<'_, Scratch> {
+    /// Computes the shapes of the hinges, and u − ū less what they have yielded, at these positions (m).
+    fn measured(&self, positions: &Field, yielded: &[f64]) -> MutexGuard<'_, Scratch> {
         // A panic elsewhere leaves the memory of an evaluation complete: every one fills it again.
         let mut scratch = self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
         let Scratch { blocks, turns, .. } = &mut *scratch;
         self.hinges.measure(self.instruction_set, positions, blocks, turns);
+        for (turn, yielded) in turns.iter_mut().zip(yielded) {
+            *turn -= yielded;
+        }
         scratch
     }
 
@@ -126,8 +150,8 @@ impl Bending {
     }
 
     /// [`Self::measured`], and the moments (N m) of the hinges.
-    fn moments(&self, positions: &Field) -> (MutexGuard<'_, Scratch>, Vec<f64>) {
-        let mut scratch = self.measured(positions);
+    fn moments(&self, positions: &Field, yielded: &[f64]) -> (MutexGuard<'_, Scratch>, Vec<f64>) {
+        let mut scratch = self.measured(positions, yielded);
         let Scratch { turns, work, .. } = &mut *scratch;
         let moments = self.solve(&turns[..self.hinges.len()], work);
         (scratch, moments)
@@ -135,16 +159,49 @@ impl Bending {
 }
 
 impl EnergyTerm for Bending {
-    fn energy(&self, positions: &Field) -> f64 {
-        let (scratch, moments) = self.moments(positions);
-        0.5 * moments.iter().zip(&scratch.turns).map(|(moment, turn)| moment * turn).sum::<f64>()
+    fn energy(&self, positions: &Field, yielded: &[f64]) -> f64 {
+        let (scratch, moments) = self.moments(positions, yielded);
+        0.5 * dot(&moments, &scratch.turns)
     }
 
-    fn add_forces(&self, positions: &Field, forces: &mut Field) {
-        let (mut scratch, mut moments) = self.moments(positions);
+    fn add_forces(&self, positions: &Field, yielded: &[f64], forces: &mut Field) {
+        let (mut scratch, mut moments) = self.moments(positions, yielded);
         let Scratch { blocks, sums, .. } = &mut *scratch;
         self.hinges.add_forces(self.instruction_set, blocks, &mut moments, sums);
         add_sums(sums, forces);
+    }
+
+    fn memory(&self) -> usize {
+        self.yield_moments.len()
+    }
+
+    /// Each round lowers Π − p·m, so the moments that are too large fall to M l; what the rounds leave yields later.
+    fn relax(&self, positions: &Field, yielded: &mut [f64]) -> Yielding {
+        if self.yield_moments.is_empty() {
+            return Yielding::default();
+        }
+        let (mut scratch, mut moments) = self.moments(positions, yielded);
+        let Scratch { turns, work, .. } = &mut *scratch;
+        let stored = 0.5 * dot(&moments, turns);
+        let before = yielded.to_vec();
+        for _ in 0..MAX_ROUNDS {
+            let mut held = true;
+            for (hinge, (moment, largest)) in moments.iter().zip(&self.yield_moments).enumerate() {
+                let excess = moment.abs() - largest;
+                if excess > 0.0 {
+                    let more = (excess / self.stiffness[hinge]).copysign(*moment);
+                    yielded[hinge] += more;
+                    turns[hinge] -= more;
+                    held &= excess <= MAX_EXCESS * largest;
+                }
+            }
+            moments = self.solve(&turns[..self.hinges.len()], work);
+            if held {
+                break;
+            }
+        }
+        let more: Vec<f64> = yielded.iter().zip(before).map(|(now, before)| now - before).collect();
+        Yielding { work: dot(&moments, &more), released: stored - 0.5 * dot(&moments, turns) }
     }
 
     fn patches(&self) -> Vec<Vec<u32>> {
@@ -152,8 +209,8 @@ impl EnergyTerm for Bending {
     }
 
     /// Each hinge for itself: k (∂u/∂x)(∂u/∂x)ᵀ + m ∂²u/∂x². The first part is an upper bound of that of K.
-    fn stiffness(&self, positions: &Field, patches: &mut [DMatrix<f64>]) {
-        let (scratch, moments) = self.moments(positions);
+    fn stiffness(&self, positions: &Field, yielded: &[f64], patches: &mut [DMatrix<f64>]) {
+        let (scratch, moments) = self.moments(positions, yielded);
         let second = self.hinges.second_gradients(positions);
         for (hinge, patch) in patches.iter_mut().enumerate() {
             let gradient = Hinges::gradient(&scratch.blocks, hinge);
@@ -165,7 +222,7 @@ impl EnergyTerm for Bending {
 
     /// K = (∂u/∂x)ᵀ Ĉ⁻¹ ∂u/∂x + Σ m ∂²u/∂x², from the patches.
     fn add_product(&self, stiffness: &Prepared<'_>, displacements: &Field, products: &mut Field) {
-        let mut scratch = self.measured(stiffness.positions);
+        let mut scratch = self.measured(stiffness.positions, &[]);
         let Scratch { blocks, sums, work, .. } = &mut *scratch;
         let mut turns = Vec::with_capacity(self.hinges.len());
         for (hinge, (nodes, patch)) in self.hinges.nodes.iter().zip(stiffness.patches).enumerate() {
@@ -200,6 +257,16 @@ impl EnergyTerm for Bending {
     fn frequency_squared(&self, _: &[f64]) -> f64 {
         self.frequency_squared
     }
+}
+
+/// Rounds of yielding at most, and how far above M l, as a share of it, the moments of the last one may be. Chosen: a
+/// few rounds serve a step of a capsule.
+const MAX_ROUNDS: u32 = 200;
+const MAX_EXCESS: f64 = 1e-2;
+
+/// The product of two columns, without what one has past the end of the other.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn add_sums(sums: &[NodeSum], forces: &mut Field) {

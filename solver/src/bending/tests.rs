@@ -34,7 +34,7 @@ fn crumpled() -> (Shell, Field) {
 
 fn forces(bending: &Bending, positions: &Field) -> Field {
     let mut forces = Field::zeros(positions.len());
-    bending.add_forces(positions, &mut forces);
+    bending.add_forces(positions, &[], &mut forces);
     forces
 }
 
@@ -46,7 +46,7 @@ fn forces_are_minus_the_gradient_of_the_energy_and_move_no_free_body() {
         let forces = forces(&bending, &positions);
         let largest = forces.iter().map(|f| f.norm()).fold(0.0, f64::max);
         let turns = |lanes: &Scratch| lanes.turns.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
-        let (scratch, _) = bending.moments(&positions);
+        let (scratch, _) = bending.moments(&positions, &[]);
         assert!(turns(&scratch) > hinges::largest_slope(), "no edge is folded");
         drop(scratch);
         let step = 1e-6;
@@ -55,7 +55,7 @@ fn forces_are_minus_the_gradient_of_the_energy_and_move_no_free_body() {
                 let at = |sign: f64| {
                     let mut moved = positions.clone();
                     moved.set(node, positions.get(node) + Vector3::ith(axis, sign * step));
-                    bending.energy(&moved)
+                    bending.energy(&moved, &[])
                 };
                 let slope = (at(1.0) - at(-1.0)) / (2.0 * step);
                 let error = (forces.get(node)[axis] + slope).abs();
@@ -93,7 +93,7 @@ fn a_constant_curvature_has_the_energy_of_the_plate() {
         let nu = FILM.poisson_ratio;
         let curvature = a * a + b * b + 2.0 * nu * a * b + 2.0 * (1.0 - nu) * c * c;
         let exact = 0.5 * FILM.bending_stiffness() * small * small * curvature;
-        let ratio = bending.energy(&Field::of(&positions)) / exact;
+        let ratio = bending.energy(&Field::of(&positions), &[]) / exact;
         // A free edge has no moment, though its nodes are on the surface: the outer elements relax.
         assert!(
             ratio < 1.0 + 1e-6 && ratio > 1.0 - 4.0 / f64::from(columns),
@@ -112,7 +112,7 @@ fn a_fold_line_and_separate_pieces_carry_no_moment() {
         .collect();
     let folded = Shell { folds: vec![[middle[0], middle[1]]], ..joined(&[sheet]) };
     let bent = moved(folded.clone(), |x| Vector3::new(x.x.min(0.1), x.y, (x.x - 0.1).max(0.0)));
-    let energy = |shell: &Shell| bending(shell, |_| false).energy(&Field::of(&bent.positions));
+    let energy = |shell: &Shell| bending(shell, |_| false).energy(&Field::of(&bent.positions), &[]);
     assert!(energy(&folded).abs() < 1e-15);
     assert!(energy(&Shell { folds: Vec::new(), ..folded.clone() }) > 1e-3);
 }
@@ -122,7 +122,7 @@ fn a_curved_shell_is_free_of_moments_at_the_start() {
     let sphere = crate::geometry::shapes::icosphere(1, 0.3);
     let positions = Field::of(&sphere.positions);
     let bending = bending(&sphere, |_| false);
-    assert!(bending.energy(&positions).abs() < 1e-20);
+    assert!(bending.energy(&positions, &[]).abs() < 1e-20);
     assert!(forces(&bending, &positions).iter().all(|f| f.norm() < 1e-9));
 }
 
@@ -131,7 +131,7 @@ fn stiffness(bending: &Bending, positions: &Field) -> [DMatrix<f64>; 2] {
     let count = 3 * positions.len();
     let nodes = bending.patches();
     let mut patches = vec![DMatrix::zeros(12, 12); nodes.len()];
-    bending.stiffness(positions, &mut patches);
+    bending.stiffness(positions, &[], &mut patches);
     let mut sum = DMatrix::zeros(count, count);
     for (nodes, patch) in nodes.iter().zip(&patches) {
         for (i, j) in (0..144).map(|index| (index / 12, index % 12)) {
@@ -197,16 +197,23 @@ fn the_patches_bound_the_stiffness_of_flat_film_and_the_frequency_that_of_any() 
     }
 }
 
-/// Two triangles with a crease between them: crease and film yield in series.
+/// Two triangles with this angle between them at their common edge of 0.3 m; the last node is 0.2 m from it.
+fn fold(angle: f64) -> Vec<Vector3<f64>> {
+    let (sin, cos) = libm::sincos(angle);
+    let last = [-0.2 * cos, 0.1, 0.2 * sin];
+    [[0.0, 0.0, 0.0], [0.0, 0.3, 0.0], [0.2, 0.1, 0.0], last].map(Vector3::from).to_vec()
+}
+
+/// Those triangles with a crease at their edge.
+fn creased() -> Shell {
+    let start = Shell::relaxed(fold(1.2), vec![[0, 2, 1], [0, 1, 3]]);
+    Shell { folds: vec![[0, 1]], ..start }
+}
+
+/// Crease and film bend in series.
 #[test]
 fn a_crease_is_a_hinge_about_its_rest_angle() {
-    let fold = |angle: f64| {
-        let (sin, cos) = libm::sincos(angle);
-        let last = [-0.2 * cos, 0.1, 0.2 * sin];
-        [[0.0, 0.0, 0.0], [0.0, 0.3, 0.0], [0.2, 0.1, 0.0], last].map(Vector3::from).to_vec()
-    };
-    let start = Shell::relaxed(fold(1.2), vec![[0, 2, 1], [0, 1, 3]]);
-    let shell = Shell { folds: vec![[0, 1]], ..start };
+    let shell = creased();
     // Moment over turn; the last node is 0.2 m from the crease.
     let stiffness = |length_scale: f64, rest_angle: Option<f64>, angle: f64| {
         let film = Film { creases: Some(Creases { length_scale, rest_angle }), ..FILM };
@@ -230,5 +237,72 @@ fn a_crease_is_a_hinge_about_its_rest_angle() {
                 );
             }
         }
+    }
+}
+
+/// Beyond the yield moment the moment stays, and its work is lost; back and forth as in a frictional joint.
+#[test]
+fn a_crease_yields_and_springs_back() {
+    let (shell, largest) = (creased(), 0.01);
+    let creases = Some(Creases { length_scale: 1.0, rest_angle: None });
+    let film = Film { creases, yield_moment: Some(largest / 0.3), ..FILM };
+    let model = FilmModel::of_shell(&film, &shell).expect("a film");
+    let bending = Bending::new(&film, &model, &shell, InstructionSet::detect(), |_| false);
+    let mut yielded = vec![0.0; bending.memory()];
+    let elastic = |bending: &Bending, angle: f64, yielded: &[f64]| {
+        bending.moments(&Field::of(&fold(angle)), yielded).1[0]
+    };
+    let stiffness = elastic(&bending, 1.3, &yielded) / 0.1;
+    let limit = largest / stiffness;
+    assert!(limit < 0.3, "{limit} rad");
+    // To 1.2 + 1 rad, back by 0.8 rad, forth again by 0.1 rad.
+    let mut lost = 0.0;
+    let mut at = 1.2;
+    for (target, expected, work) in [
+        (2.2, largest, largest * (1.0 - limit)),
+        (1.4, -largest, largest * (0.8 - 2.0 * limit)),
+        (1.5, -largest + 0.1 * stiffness, 0.0),
+    ] {
+        let before = lost;
+        let start = at;
+        for step in 1..=1000 {
+            at = start + (target - start) * f64::from(step) / 1000.0;
+            let Yielding { work, released } = bending.relax(&Field::of(&fold(at)), &mut yielded);
+            assert!(work >= 0.0 && released >= work);
+            lost += work;
+        }
+        let moment = elastic(&bending, at, &yielded);
+        assert!((moment - expected).abs() < 0.011 * largest, "{target}: {moment} of {expected}");
+        assert!(
+            (lost - before - work).abs() < 0.011 * largest,
+            "{target}: {} of {work}",
+            lost - before
+        );
+    }
+}
+
+#[test]
+fn no_edge_of_yielding_film_bears_more_than_its_yield_moment() {
+    let (shell, positions) = crumpled();
+    let model = FilmModel::of_shell(&FILM, &shell).expect("a film");
+    let set = InstructionSet::detect();
+    let elastic = Bending::new(&FILM, &model, &shell, set, |_| false);
+    let moments = elastic.moments(&positions, &[]).1;
+    let unyielded = elastic.energy(&positions, &[]);
+    let over_length = |moments: &[f64]| {
+        let all = moments.iter().zip(&elastic.hinges.lengths);
+        all.fold(0.0_f64, |most, (moment, length)| most.max(moment.abs() / length))
+    };
+    for factor in [0.1, 0.5, 0.9, 1.1] {
+        let largest = factor * over_length(&moments);
+        let film = Film { yield_moment: Some(largest), ..FILM };
+        let bending = Bending::new(&film, &model, &shell, set, |_| false);
+        let mut yielded = vec![0.0; bending.memory()];
+        let Yielding { work, released } = bending.relax(&positions, &mut yielded);
+        let after = over_length(&bending.moments(&positions, &yielded).1);
+        assert!(after < 1.011 * largest, "{factor}: {after} of {largest}");
+        assert!(released >= work && work >= 0.0 && (work > 0.0) == (factor < 1.0));
+        let energy = bending.energy(&positions, &yielded);
+        assert!((energy + released - unyielded).abs() < 1e-9 * unyielded);
     }
 }

@@ -107,8 +107,7 @@ impl EnergyAccounting {
     ) -> Ledger {
         let works = self.works;
         let moved = system.first_moment(state) - Vector3::from(self.start_moment);
-        let terms = system.energy_terms.iter();
-        let strain = terms.fold(strain, |sum, term| sum + term.energy(&state.positions));
+        let strain = strain + system.term_energy(&state.positions, &state.yielded);
         Ledger {
             kinetic,
             strain,

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Every integrator adds the terms of its system to forces, energy and stable step. A system without terms
-//! pays nothing for them.
+//! pays nothing for them. A term may yield: what it keeps of that is part of the state of the film, zero at first.
 
 use core::fmt;
 
@@ -26,20 +26,39 @@ pub struct Prepared<'a> {
     pub patches: &'a [DMatrix<f64>],
 }
 
-/// An energy that is a function of the positions of the nodes.
+/// Energies of yielding at fixed positions, J.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Yielding {
+    /// Work of the forces that remain along what yielded: dissipated.
+    pub work: f64,
+    /// Decrease of Π, at least that work.
+    pub released: f64,
+}
+
+/// An energy that is a function of the positions of the nodes, and of what the term has yielded.
 pub trait EnergyTerm: fmt::Debug + Send + Sync {
     /// Π at these positions (m), J.
-    fn energy(&self, positions: &Field) -> f64;
+    fn energy(&self, positions: &Field, yielded: &[f64]) -> f64;
 
     /// Adds −∂Π/∂x of each node (N) to `forces`.
-    fn add_forces(&self, positions: &Field, forces: &mut Field);
+    fn add_forces(&self, positions: &Field, yielded: &[f64], forces: &mut Field);
+
+    /// Number of values that the term keeps of its yielding.
+    fn memory(&self) -> usize {
+        0
+    }
+
+    /// Yields at these positions (m), at the end of a step.
+    fn relax(&self, _positions: &Field, _yielded: &mut [f64]) -> Yielding {
+        Yielding::default()
+    }
 
     /// Sets of nodes, patches: constant.
     fn patches(&self) -> Vec<Vec<u32>>;
 
     /// Sets a matrix for each patch at these positions (m), N/m; row 3 c + k for the component k of its corner c. Their
     /// sum is K, or near it and easier to factorise.
-    fn stiffness(&self, positions: &Field, patches: &mut [DMatrix<f64>]);
+    fn stiffness(&self, positions: &Field, yielded: &[f64], patches: &mut [DMatrix<f64>]);
 
     /// Adds K u, N, of displacements u (m) to `products`.
     fn add_product(&self, stiffness: &Prepared<'_>, displacements: &Field, products: &mut Field);

@@ -19,6 +19,8 @@ pub enum Term {
     Elastic,
     /// Bending force of the film, and that of any further energy.
     Bending,
+    /// Energy dissipated by yielding in the energy ledger.
+    YieldWork,
     /// Numerical stress of the film.
     NumericalStress,
     /// Numerical dissipation in the energy ledger.
@@ -69,9 +71,10 @@ pub enum Term {
 
 impl Term {
     /// Every term.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 26] = [
         Self::Elastic,
         Self::Bending,
+        Self::YieldWork,
         Self::NumericalStress,
         Self::NumericalWork,
         Self::Creep,

@@ -55,6 +55,10 @@ pub struct Film {
     /// Stiffness of the fold lines of film with bending; `None` where they turn freely.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub creases: Option<Creases>,
+    /// Largest bending moment of film with bending and of its creases, for each metre of an edge, N m/m; `None` for film
+    /// that does not yield.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub yield_moment: Option<f64>,
     /// Numerical damping ratio ζ: of the highest mode of an element while the film carries tension. Not
     /// a property of the film; it stands here because the constants of the elements hold it.
     #[serde(rename = "viscosity")]

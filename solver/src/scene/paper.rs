@@ -50,6 +50,7 @@ impl Film {
         compression: 0.0,
         bending: false,
         creases: None,
+        yield_moment: None,
         numerical_damping: NUMERICAL_DAMPING,
         temperature: TEMPERATURE,
         loss_factor: LOSS_FACTOR,

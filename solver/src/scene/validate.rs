@@ -43,6 +43,9 @@ impl Scene {
         if let Some(creases) = film.creases {
             positive("creases.length_scale", creases.length_scale, "m")?;
         }
+        if let Some(moment) = film.yield_moment {
+            positive("film.yield_moment", moment, "N m/m")?;
+        }
         not_negative("film.numerical_damping", film.numerical_damping, "a damping ratio")?;
         not_negative("film.loss_factor", film.loss_factor, "a loss factor")?;
         positive("film.loss_frequency", film.loss_frequency, "Hz")?;

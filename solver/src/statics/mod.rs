@@ -113,9 +113,9 @@ pub fn solve(
     let (positions, from) =
         known.map_or((&start, None), |(state, pressure)| (&state.positions, Some(pressure)));
     let equilibrium = settle(&film, positions, from, &Tolerances::default(), continues)?;
-    let FilmSystem { model, supports, energy_terms, .. } = film;
-    let terms = energy_terms.iter().map(|term| term.energy(&equilibrium.positions));
-    let strain = strain_energy(&model, &equilibrium.positions) + terms.sum::<f64>();
+    let terms = film.term_energy(&equilibrium.positions, &film.unyielded());
+    let FilmSystem { model, supports, .. } = film;
+    let strain = strain_energy(&model, &equilibrium.positions) + terms;
     let volume = scene.shell.volume(|node| equilibrium.positions.get(node as usize));
     let gravity_work: f64 = model
         .mass

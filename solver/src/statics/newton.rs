@@ -179,7 +179,7 @@ impl<'a> NewtonSearch<'a> {
             &mut self.nodes,
         );
         let _ = add_closure(model, &self.trial, &mut self.nodes);
-        self.film.term_forces(&self.trial, &mut self.nodes);
+        self.film.term_forces(&self.trial, &self.film.unyielded(), &mut self.nodes);
         for node in 0..model.nodes() {
             self.forces.set(node, self.film.node_force(&self.nodes, self.overpressure, node));
         }

@@ -7,7 +7,7 @@
 //! gravity  −g·Σ m x            planes  −Σ F n·x
 //! ```
 //!
-//! The creep strain and the history of contact are those of the state: they change only when a step is
+//! Creep strain, what terms have yielded, and the history of contact are those of the state: they change only when a step is
 //! committed.
 
 use super::{FilmState, FilmSystem, PressureLoad, Workspace};
@@ -59,7 +59,7 @@ impl FilmSystem {
         workspace.prepare_search(self, positions);
         let mut sums = workspace.membrane(self, state, positions, None);
         workspace.add_other_forces(self, positions, &mut sums);
-        self.term_forces(positions, &mut workspace.forces);
+        self.term_forces(positions, &state.yielded, &mut workspace.forces);
         workspace.contact_at(self, state, positions, time);
         let volume = sums.six_volumes / 6.0;
         let (gas_pressure, pressure) = self.pressure_energy(state, volume);
@@ -74,7 +74,7 @@ impl FilmSystem {
             pressure,
             gravity: -self.model.mass.iter().zip(positions.iter()).map(weight).sum::<f64>(),
             planes: -planes.sum::<f64>(),
-            terms: self.energy_terms.iter().map(|term| term.energy(positions)).sum(),
+            terms: self.term_energy(positions, &state.yielded),
             volume,
             gas_pressure,
             largest_stress: sums.largest_stress,

@@ -24,6 +24,8 @@ pub struct FilmState {
     /// Creep strains, the history of the material, in the layout of the element loop; empty for film
     /// without loss.
     pub creep: Vec<[CreepStrain; 2]>,
+    /// What each further energy has yielded.
+    pub yielded: Vec<Vec<f64>>,
     /// Enclosed volume V, m³.
     pub volume: f64,
     /// Gas: pressure p. Fixed overpressure: that overpressure. Pa.
@@ -49,6 +51,7 @@ impl FilmState {
             bind(body, *velocity, &mut velocities);
         }
         let creep = CreepStrain::at_rest(&system.model, &positions);
+        let yielded = system.unyielded();
         system.model.closure_nodes.place(&mut positions);
         let mut contact = ContactState::default();
         if let Some(contact_model) = &system.contact {
@@ -58,8 +61,18 @@ impl FilmState {
                 .collect();
         }
         let (time, volume, pressure) = (0.0, 0.0, 0.0);
-        let mut state =
-            Self { time, positions, velocities, planes, creep, volume, pressure, gas, contact };
+        let mut state = Self {
+            time,
+            positions,
+            velocities,
+            planes,
+            creep,
+            yielded,
+            volume,
+            pressure,
+            gas,
+            contact,
+        };
         let mut workspace = Workspace::new(system, &state);
         state.volume = workspace.forces_at(system, &state, None).six_volumes / 6.0;
         state.pressure = system.pressure(state.gas, state.volume);
@@ -74,6 +87,12 @@ impl FilmState {
         let columns = [&self.positions, &self.velocities].map(|f| [&f.x, &f.y, &f.z]);
         columns.iter().flatten().all(|column| column.len() == nodes)
             && self.creep.len() == blocks
+            && self.yielded.len() == system.energy_terms.len()
+            && self
+                .yielded
+                .iter()
+                .zip(&system.energy_terms)
+                .all(|(y, term)| y.len() == term.memory())
             && self.planes.len() == system.supports.bodies.len()
     }
 }

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use super::FilmState;
 use crate::collision::contact::ContactModel;
 use crate::geometry::field::Field;
-use crate::mechanics::energy_term::EnergyTerm;
+use crate::mechanics::energy_term::{EnergyTerm, Yielding};
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::membrane::NodeForces;
 use crate::mechanics::gas::{Gas, GasState, GasStep};
@@ -116,8 +116,33 @@ impl FilmSystem {
         forces
     }
 
+    /// What the further energies have yielded before any motion: nothing.
+    pub fn unyielded(&self) -> Vec<Vec<f64>> {
+        self.energy_terms.iter().map(|term| vec![0.0; term.memory()]).collect()
+    }
+
+    /// Energy of the further terms at these positions (m), J.
+    pub fn term_energy(&self, positions: &Field, yielded: &[Vec<f64>]) -> f64 {
+        self.energy_terms
+            .iter()
+            .zip(yielded)
+            .map(|(term, of_term)| term.energy(positions, of_term))
+            .sum()
+    }
+
+    /// Lets the further energies yield at the positions of a state.
+    pub fn relax_terms(&self, state: &mut FilmState) -> Yielding {
+        let mut sum = Yielding::default();
+        for (term, yielded) in self.energy_terms.iter().zip(&mut state.yielded) {
+            let Yielding { work, released } = term.relax(&state.positions, yielded);
+            sum.work += work * self.fault_factor(Term::YieldWork);
+            sum.released += released;
+        }
+        sum
+    }
+
     /// Sets the forces (N) of the further energies at these positions (m).
-    pub fn term_forces(&self, positions: &Field, forces: &mut NodeForces) {
+    pub fn term_forces(&self, positions: &Field, yielded: &[Vec<f64>], forces: &mut NodeForces) {
         if self.energy_terms.is_empty() {
             return;
         }
@@ -125,8 +150,8 @@ impl FilmSystem {
         for column in [x, y, z] {
             column.fill(0.0);
         }
-        for term in &self.energy_terms {
-            term.add_forces(positions, &mut forces.terms);
+        for (term, of_term) in self.energy_terms.iter().zip(yielded) {
+            term.add_forces(positions, of_term, &mut forces.terms);
         }
         if self.fault.is_some() {
             let factor = self.fault_factor(Term::Bending);

@@ -52,16 +52,16 @@ impl TermStiffness {
         Self { nodes, patches, counts, positions: Field::zeros(0) }
     }
 
-    /// Computes it at these positions (m).
-    pub fn prepare(&mut self, system: &FilmSystem, positions: &Field) {
+    /// Computes it at these positions (m), with what the terms have yielded.
+    pub fn prepare(&mut self, system: &FilmSystem, positions: &Field, yielded: &[Vec<f64>]) {
         if self.counts.is_empty() {
             return;
         }
         self.positions.clone_from(positions);
         let mut rest = &mut self.patches[..];
-        for (term, count) in system.energy_terms.iter().zip(&self.counts) {
+        for ((term, count), yielded) in system.energy_terms.iter().zip(&self.counts).zip(yielded) {
             let (of_term, others) = rest.split_at_mut(*count);
-            term.stiffness(positions, of_term);
+            term.stiffness(positions, yielded, of_term);
             rest = others;
         }
     }

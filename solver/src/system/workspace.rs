@@ -84,7 +84,7 @@ impl Workspace {
     ) -> MembraneSums {
         let mut sums = self.membrane(system, state, &state.positions, step);
         self.add_other_forces(system, &state.positions, &mut sums);
-        system.term_forces(&state.positions, &mut self.forces);
+        system.term_forces(&state.positions, &state.yielded, &mut self.forces);
         self.contact_at(system, state, &state.positions, state.time);
         sums
     }

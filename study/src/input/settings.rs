@@ -222,6 +222,7 @@ impl Settings {
             compression: self.needed("film.compression", source)?,
             bending: self.flag("film.bending").unwrap_or(false),
             creases: self.creases(source)?,
+            yield_moment: self.number("film.yield_moment"),
             numerical_damping: self.needed("film.numerical_damping", source)?,
             temperature: self.needed("film.temperature", source)?,
             loss_factor: self.needed("film.loss_factor", source)?,
@@ -236,10 +237,15 @@ impl Settings {
             Some(_) => Some(self.needed("creases.length_scale", source)?),
             None => self.number("creases.length_scale"),
         };
-        if length_scale.is_some() && self.flag("film.bending") != Some(true) {
-            let (problem, allowed) =
-                ("is false, but the file has creases", "true, for film with creases");
-            return Err(source.error("film.bending", false, problem, allowed));
+        for (given, name) in [
+            (length_scale.is_some(), "creases"),
+            (self.number("film.yield_moment").is_some(), "film.yield_moment"),
+        ] {
+            if given && self.flag("film.bending") != Some(true) {
+                let problem = format!("is false, but the file has {name}");
+                let allowed = format!("true, for film with {name}");
+                return Err(source.error("film.bending", false, problem, allowed));
+            }
         }
         Ok(length_scale.map(|length_scale| Creases { length_scale, rest_angle }))
     }

@@ -17,12 +17,14 @@ const SPRING: Detector = ("gas_spring", "period");
 const SPRING_STOPS: Detector = ("gas_spring", "run");
 const SPHERE: Detector = ("breathing_sphere", "frequency");
 const STRIP: Detector = ("strip_damping", "log decrement");
+const YIELD: Detector = ("yielding_crease", "energy residual");
 const PANEL: Detector = ("shear_panel", "P12");
 
 /// For each term: the detector of an error of 1 %, and that of the wrong sign.
-const DETECTORS: [(Term, Detector, Detector); 25] = [
+const DETECTORS: [(Term, Detector, Detector); 26] = [
     (Term::Elastic, PANEL, PANEL),
     (Term::Bending, ("plate_frequency", "energy residual"), ("plate_frequency", "run")),
+    (Term::YieldWork, YIELD, YIELD),
     (Term::NumericalStress, STRIP, STRIP),
     (Term::NumericalWork, ("strip_damping", "dissipated energy"), FILM_LEDGER),
     (Term::Creep, ("strip_loss", "log decrement"), ("strip_loss", "run")),

@@ -215,10 +215,10 @@ fn with_friction() -> String {
 }
 
 /// Film with bending and creases.
-fn with_bending() -> String {
+fn with_bending(yield_moment: Option<f64>) -> String {
     short_capsule(0.02, |scene| {
         let creases = Some(Creases { length_scale: 0.02, rest_angle: None });
-        scene.film = Film { compression: 1.0, bending: true, creases, ..scene.film };
+        scene.film = Film { compression: 1.0, bending: true, creases, yield_moment, ..scene.film };
     })
 }
 
@@ -311,7 +311,8 @@ fn the_physics_changes_only_with_its_version() {
         "film, tube with a moving support": turned_tube(),
         "film, capsule under a lid": under_a_lid(),
         "film, capsule with friction, compression 1": with_friction(),
-        "film, capsule with bending and creases": with_bending(),
+        "film, capsule with bending and creases": with_bending(None),
+        "film, capsule with bending, creases and yield": with_bending(Some(1e-6)),
         "film, capsule with adhesion": with_adhesion(),
         "film, tube closed by faces, with gas": closed_by_faces(),
         "film, sheet between moving plates": between_moving_plates(),

@@ -177,7 +177,7 @@ impl Explicit {
                     .ok_or_else(|| no_advance(state))?;
             }
         }
-        system.term_forces(&state.positions, &mut self.workspace.forces);
+        system.term_forces(&state.positions, &state.yielded, &mut self.workspace.forces);
         budget.stopwatch.begins(Stage::Audit);
         budget.audit.complete(system, state)?;
         Ok(Advance::Reached)
@@ -242,7 +242,8 @@ impl Explicit {
         let kick = 0.5 * (self.motion.last_step + length);
         let term_kick = self.motion.terms.step(system, length, remaining);
         if term_kick != 0.0 {
-            system.term_forces(&state.positions, &mut self.workspace.forces);
+            self.motion.accounting.works.material_loss += system.relax_terms(state).work;
+            system.term_forces(&state.positions, &state.yielded, &mut self.workspace.forces);
         }
         self.kick(system, state, (kick, term_kick), length, end);
         self.collision_step(system, state, kick, length, stopwatch)?;

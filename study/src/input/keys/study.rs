@@ -153,6 +153,8 @@ pub static KEYS: &[Key] = &[
         "Compression fraction c: 0 is the tension field, 1 the full membrane stiffness."),
     key("film.bending", KeyKind::Flag, Absent("false"), "true",
         "Bending stiffness E t^3/(12(1-nu^2)) of the film; without creases, fold lines turn freely. It needs film.compression 1."),
+    key("film.yield_moment", likely(above(Dimension::Force, 0.0, 1e6), 1e-5, 1e3), Absent("the film does not yield"),
+        "\"0.011 N\"", "Largest bending moment of film and creases for each metre of edge: yield stress times thickness^2 over 4. It needs film.bending."),
     key("film.loss_factor", from(Dimension::Number, 0.0, 0.5), Number(LOSS_FACTOR), "0.01",
         "Largest loss factor (tan delta) of the film's material. The default is assumed; polyimide: 0.003 to 0.03."),
     key("film.loss_frequency", likely(from(Dimension::Frequency, 0.1, 10_000.0), 0.1, 10_000.0), Number(LOSS_FREQUENCY),

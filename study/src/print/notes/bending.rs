@@ -1,4 +1,4 @@
-//! Whether bending may change the results of a study, and whether its creases would yield.
+//! Whether bending may change the results of a study, and whether its creases would yield where they do not.
 //!
 //! ```text
 //! l = (D/p)^(1/3)              length over which gas of pressure p bends film
@@ -80,11 +80,12 @@ pub(super) fn yielding_creases(study: &Study) -> Option<String> {
             0.5 * film.youngs_modulus * film.thickness * turn / creases.length_scale
         })
     };
-    let largest = film_points(study).map(stress).fold(0.0, f64::max);
+    let elastic = film_points(study).filter(|point| point.job.scene.film.yield_moment.is_none());
+    let largest = elastic.map(stress).fold(0.0, f64::max);
     (largest > YIELD_STRESS).then(|| {
         format!(
-            "note: creases stress the surface of the film by up to {} MPa; Kapton yields at {} MPa, and creases here do \
-             not yield: choose a longer creases.length_scale",
+            "note: creases stress the surface of the film by up to {} MPa; Kapton yields at {} MPa: set \
+             film.yield_moment (N), yield stress times thickness^2 over 4",
             brief_number(1e-6 * largest),
             brief_number(1e-6 * YIELD_STRESS)
         )

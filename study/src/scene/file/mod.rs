@@ -143,6 +143,12 @@ impl SceneFile {
         let statics = is_static(&settings);
         let contact = contact::read(tree, &settings, &reader.source);
         let film = settings.film(&reader.source)?;
+        if statics && film.yield_moment.is_some() {
+            let problem =
+                "is given, but a static equilibrium does not know what has yielded before";
+            let allowed = "no film.yield_moment; or motion, without solver.statics";
+            return Err(reader.source.error("film.yield_moment", "", problem, allowed).into());
+        }
         let integrator = settings.integrator(&reader.source)?;
         let bending = bending(&film, integrator).map(|stiff| stiff || statics);
         reader.needs = Needs { contact: matches!(contact, Ok(Some(_))), statics, bending };

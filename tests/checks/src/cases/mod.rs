@@ -129,6 +129,7 @@ pub const CASES: &[Case] = &[
     long("opened_crease_meshes", |rig| creases::opened_crease(rig, 1..3)),
     quick("creased_panels", |rig| creases::creased_panels(rig, 0..1)),
     long("creased_panels_meshes", |rig| creases::creased_panels(rig, 1..3)),
+    quick("yielding_crease", creases::yielding_crease),
     long("wrinkles", wrinkles::stretched_sheet),
     quick("stack", contact_plates::stack_of_sheets),
     quick("tube_between_plates", contact_plates::tube_between_plates),
