@@ -45,21 +45,34 @@ fn sheet(height: f64) -> String {
 const REFERENCE_GAP: f64 = 0.791_899_699e-3;
 
 #[test]
-fn creases_need_bending_and_a_length_and_change_the_motion() {
+fn creases_and_yield_need_bending_and_change_the_motion() {
     let with = |film: &Value, creases: &Value| capsule(&json!({"film": film, "creases": creases}));
     let (stiff, length) = (json!({"compression": 1}), json!({"length_scale": "5 mm"}));
     refused(&with(&stiff, &length), &[], &["film.bending = false", "allowed: true"]);
     let bending = json!({"compression": 1, "bending": true});
     let angle = json!({"rest_angle": "90 deg"});
     refused(&with(&bending, &angle), &[], &["creases.length_scale: missing", "give it"]);
+    let yielding =
+        |bending: bool| json!({"compression": 1, "bending": bending, "yield_moment": "1e-6 N"});
+    let elastic = ["film.bending = false", "the file has film.yield_moment"];
+    refused(&with(&yielding(false), &json!({})), &[], &elastic);
+    let mut still = with(&yielding(true), &json!({}));
+    still["solver"] = json!({"static": true});
+    refused(
+        &still,
+        &[],
+        &["film.yield_moment", "static equilibrium", "allowed: no film.yield_moment"],
+    );
     let volume =
         |film: &Value, creases: &Value| number(&solved(&with(film, creases), &[]), "/volume");
-    let volumes = [(&stiff, &json!({})), (&bending, &json!({})), (&bending, &length)]
-        .map(|(f, c)| volume(f, c));
-    assert!(
-        volumes[0].to_bits() != volumes[1].to_bits()
-            && volumes[1].to_bits() != volumes[2].to_bits()
-    );
+    let volumes = [
+        (&stiff, json!({})),
+        (&bending, json!({})),
+        (&bending, length.clone()),
+        (&yielding(true), length.clone()),
+    ]
+    .map(|(film, creases)| volume(film, &creases).to_bits());
+    assert!(volumes.windows(2).all(|pair| pair[0] != pair[1]), "{volumes:?}");
     let sheet_scene = json!({
         "mesh": {"positions": "sheet.obj"}, "film": bending, "creases": length, "contact": {"enabled": false},
         "solver": {"end_time": "1 ms"},

@@ -143,11 +143,11 @@ impl SceneFile {
         let statics = is_static(&settings);
         let contact = contact::read(tree, &settings, &reader.source);
         let film = settings.film(&reader.source)?;
-        if statics && film.yield_moment.is_some() {
+        if let Some(moment) = film.yield_moment.filter(|_| statics) {
             let problem =
                 "is given, but a static equilibrium does not know what has yielded before";
-            let allowed = "no film.yield_moment; or motion, without solver.statics";
-            return Err(reader.source.error("film.yield_moment", "", problem, allowed).into());
+            let allowed = "no film.yield_moment with solver.static";
+            return Err(reader.source.error("film.yield_moment", moment, problem, allowed).into());
         }
         let integrator = settings.integrator(&reader.source)?;
         let bending = bending(&film, integrator).map(|stiff| stiff || statics);
