@@ -5,14 +5,15 @@ use billow_solver::mechanics::forces::membrane::numerical_forces;
 use crate::film_rig::{INFLOW, capsule_film, explicit, text};
 use crate::prelude::*;
 
-/// The paper's capsule, stowed; in contact with friction, full stiffness and bending, and with a monitor that checks every step
-/// of about half of the blocks.
+/// The paper's capsule, stowed; in contact with friction, full stiffness, bending and yield, and with a monitor that checks
+/// every step of about half of the blocks.
 fn film(set: InstructionSet, in_contact: bool) -> FilmSimulation {
     let monitor = MonitorSettings { block: 50, dense_block_period: 2, seed: 1 };
     let contact = FilmContact { friction: 0.2, monitor, ..FilmContact::default() };
     capsule_film(set, in_contact.then_some(contact), |scene| {
         scene.film.compression = if in_contact { 1.0 } else { 0.01 };
         scene.film.bending = in_contact;
+        scene.film.yield_moment = in_contact.then_some(1e-6);
         scene.gravity = if in_contact { 0.0 } else { -9.8 };
     })
 }

@@ -63,6 +63,8 @@ fn creases_and_yield_need_bending_and_change_the_motion() {
         &[],
         &["film.yield_moment", "static equilibrium", "allowed: no film.yield_moment"],
     );
+    still["solver"] = json!({"integrator": "implicit", "end_time": "1 ms"});
+    refused(&still, &[], &["implicit has no yield", "allowed: no film.yield_moment, or explicit"]);
     let volume =
         |film: &Value, creases: &Value| number(&solved(&with(film, creases), &[]), "/volume");
     let volumes = [

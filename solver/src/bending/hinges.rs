@@ -26,8 +26,7 @@ use crate::platform::simd::{
 };
 use crate::scene::Creases;
 
-/// θ up to which u = 2 tan(θ/2), rad. Chosen: the mesh of the capsule at n 8 reaches the plastic moment of its film
-/// (1.1e-2 N) near it, and the stiffness of a hinge stays below 16 times that of flat film.
+/// θ up to which u = 2 tan(θ/2), rad. Chosen: the stiffness of a hinge is at most 16 times that of flat film.
 pub const MAX_SMOOTH_TURN: f64 = 2.0 * PI / 3.0;
 /// Cosine of that angle.
 const MIN_COSINE: f64 = -0.5;

@@ -32,9 +32,9 @@ fn crumpled() -> (Shell, Field) {
     (shell, positions)
 }
 
-fn forces(bending: &Bending, positions: &Field) -> Field {
+fn forces(bending: &Bending, positions: &Field, yielded: &[f64]) -> Field {
     let mut forces = Field::zeros(positions.len());
-    bending.add_forces(positions, &[], &mut forces);
+    bending.add_forces(positions, yielded, &mut forces);
     forces
 }
 
@@ -43,7 +43,7 @@ fn forces_are_minus_the_gradient_of_the_energy_and_move_no_free_body() {
     let (shell, positions) = crumpled();
     for held in [|_: u32| false, |node: u32| node.is_multiple_of(5) || node < 2] {
         let bending = bending(&shell, held);
-        let forces = forces(&bending, &positions);
+        let forces = forces(&bending, &positions, &[]);
         let largest = forces.iter().map(|f| f.norm()).fold(0.0, f64::max);
         let turns = |lanes: &Scratch| lanes.turns.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
         let (scratch, _) = bending.moments(&positions, &[]);
@@ -74,7 +74,7 @@ fn every_instruction_set_gives_the_same_bits() {
     let (shell, positions) = crumpled();
     let model = FilmModel::of_shell(&FILM, &shell).expect("a film");
     let all = InstructionSet::ALL.into_iter().filter(|set| set.available());
-    let of = |set| forces(&Bending::new(&FILM, &model, &shell, set, |_| false), &positions);
+    let of = |set| forces(&Bending::new(&FILM, &model, &shell, set, |_| false), &positions, &[]);
     let found: Vec<Field> = all.map(of).collect();
     assert!(found.windows(2).all(|pair| pair[0] == pair[1]));
 }
@@ -123,15 +123,15 @@ fn a_curved_shell_is_free_of_moments_at_the_start() {
     let positions = Field::of(&sphere.positions);
     let bending = bending(&sphere, |_| false);
     assert!(bending.energy(&positions, &[]).abs() < 1e-20);
-    assert!(forces(&bending, &positions).iter().all(|f| f.norm() < 1e-9));
+    assert!(forces(&bending, &positions, &[]).iter().all(|f| f.norm() < 1e-9));
 }
 
 /// K at these positions, and the sum of the patches.
-fn stiffness(bending: &Bending, positions: &Field) -> [DMatrix<f64>; 2] {
+fn stiffness(bending: &Bending, positions: &Field, yielded: &[f64]) -> [DMatrix<f64>; 2] {
     let count = 3 * positions.len();
     let nodes = bending.patches();
     let mut patches = vec![DMatrix::zeros(12, 12); nodes.len()];
-    bending.stiffness(positions, &[], &mut patches);
+    bending.stiffness(positions, yielded, &mut patches);
     let mut sum = DMatrix::zeros(count, count);
     for (nodes, patch) in nodes.iter().zip(&patches) {
         for (i, j) in (0..144).map(|index| (index / 12, index % 12)) {
@@ -157,14 +157,16 @@ fn stiffness(bending: &Bending, positions: &Field) -> [DMatrix<f64>; 2] {
 fn the_stiffness_is_the_change_of_the_forces() {
     let (shell, positions) = crumpled();
     let bending = bending(&shell, |_| false);
-    let [exact, _] = stiffness(&bending, &positions);
+    let yielded: Vec<f64> =
+        pseudo_random(bending.hinges.len(), 3).iter().map(|random| 0.3 * random.x).collect();
+    let [exact, _] = stiffness(&bending, &positions, &yielded);
     let step = 1e-6;
     for column in 0..exact.ncols() {
         let (node, axis) = (column / 3, column % 3);
         let at = |sign: f64| {
             let mut moved = positions.clone();
             moved.set(node, positions.get(node) + Vector3::ith(axis, sign * step));
-            forces(&bending, &moved)
+            forces(&bending, &moved, &yielded)
         };
         let (above, below) = (at(1.0), at(-1.0));
         for row in 0..exact.nrows() {
@@ -181,13 +183,13 @@ fn the_patches_bound_the_stiffness_of_flat_film_and_the_frequency_that_of_any() 
     let model = FilmModel::of_shell(&FILM, &shell).expect("a film");
     let bending = bending(&shell, |_| false);
     let flat = Field::of(&shell.positions);
-    let [exact, patches] = stiffness(&bending, &flat);
+    let [exact, patches] = stiffness(&bending, &flat, &[]);
     assert!((&exact - exact.transpose()).amax() < 1e-9 * exact.amax());
     assert!(exact.clone().symmetric_eigenvalues().min() > -1e-9 * exact.amax());
     assert!((patches - &exact).symmetric_eigenvalues().min() > -1e-9 * exact.amax());
     let allowed = bending.frequency_squared(&model.mass);
     for positions in [&flat, &folded] {
-        let [exact, _] = stiffness(&bending, positions);
+        let [exact, _] = stiffness(&bending, positions, &[]);
         let root = |k: usize| model.mass[k / 3].sqrt();
         let scaled = DMatrix::from_fn(exact.nrows(), exact.ncols(), |i, j| {
             exact[(i, j)] / (root(i) * root(j))
@@ -219,7 +221,8 @@ fn a_crease_is_a_hinge_about_its_rest_angle() {
         let film = Film { creases: Some(Creases { length_scale, rest_angle }), ..FILM };
         let model = FilmModel::of_shell(&film, &shell).expect("a film");
         let bending = Bending::new(&film, &model, &shell, InstructionSet::detect(), |_| false);
-        let moment = |angle: f64| forces(&bending, &Field::of(&fold(angle))).get(3).norm() * 0.2;
+        let moment =
+            |angle: f64| forces(&bending, &Field::of(&fold(angle)), &[]).get(3).norm() * 0.2;
         let rest = rest_angle.unwrap_or(1.2);
         assert!(moment(rest) < 1e-12 * moment(rest + 1.0));
         moment(angle) / (angle - rest).abs()
@@ -248,7 +251,7 @@ fn a_crease_yields_and_springs_back() {
     let film = Film { creases, yield_moment: Some(largest / 0.3), ..FILM };
     let model = FilmModel::of_shell(&film, &shell).expect("a film");
     let bending = Bending::new(&film, &model, &shell, InstructionSet::detect(), |_| false);
-    let mut yielded = vec![0.0; bending.memory()];
+    let mut yielded = vec![0.0; bending.yield_values()];
     let elastic = |bending: &Bending, angle: f64, yielded: &[f64]| {
         bending.moments(&Field::of(&fold(angle)), yielded).1[0]
     };
@@ -267,7 +270,8 @@ fn a_crease_yields_and_springs_back() {
         let start = at;
         for step in 1..=1000 {
             at = start + (target - start) * f64::from(step) / 1000.0;
-            let Yielding { work, released } = bending.relax(&Field::of(&fold(at)), &mut yielded);
+            let Yielding { work, released } =
+                bending.let_yield(&Field::of(&fold(at)), &mut yielded);
             assert!(work >= 0.0 && released >= work);
             lost += work;
         }
@@ -297,8 +301,8 @@ fn no_edge_of_yielding_film_bears_more_than_its_yield_moment() {
         let largest = factor * over_length(&moments);
         let film = Film { yield_moment: Some(largest), ..FILM };
         let bending = Bending::new(&film, &model, &shell, set, |_| false);
-        let mut yielded = vec![0.0; bending.memory()];
-        let Yielding { work, released } = bending.relax(&positions, &mut yielded);
+        let mut yielded = vec![0.0; bending.yield_values()];
+        let Yielding { work, released } = bending.let_yield(&positions, &mut yielded);
         let after = over_length(&bending.moments(&positions, &yielded).1);
         assert!(after < 1.011 * largest, "{factor}: {after} of {largest}");
         assert!(released >= work && work >= 0.0 && (work > 0.0) == (factor < 1.0));

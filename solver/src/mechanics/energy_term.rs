@@ -29,7 +29,7 @@ pub struct Prepared<'a> {
 /// Energies of yielding at fixed positions, J.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Yielding {
-    /// Work of the forces that remain along what yielded: dissipated.
+    /// Work of the forces that remain along what yielded.
     pub work: f64,
     /// Decrease of Π, at least that work.
     pub released: f64,
@@ -44,12 +44,12 @@ pub trait EnergyTerm: fmt::Debug + Send + Sync {
     fn add_forces(&self, positions: &Field, yielded: &[f64], forces: &mut Field);
 
     /// Number of values that the term keeps of its yielding.
-    fn memory(&self) -> usize {
+    fn yield_values(&self) -> usize {
         0
     }
 
     /// Yields at these positions (m), at the end of a step.
-    fn relax(&self, _positions: &Field, _yielded: &mut [f64]) -> Yielding {
+    fn let_yield(&self, _positions: &Field, _yielded: &mut [f64]) -> Yielding {
         Yielding::default()
     }
 

@@ -55,8 +55,8 @@ pub struct Film {
     /// Stiffness of the fold lines of film with bending; `None` where they turn freely.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub creases: Option<Creases>,
-    /// Largest bending moment of film with bending and of its creases, for each metre of an edge, N m/m; `None` for film
-    /// that does not yield.
+    /// Largest bending moment of film with bending and of its creases, for each metre of an edge, N m/m; `None` for
+    /// film that does not yield.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub yield_moment: Option<f64>,
     /// Numerical damping ratio ζ: of the highest mode of an element while the film carries tension. Not
@@ -84,10 +84,10 @@ pub struct Creases {
 }
 
 impl Film {
-    /// This film without loss and without numerical damping, as in a static equilibrium.
+    /// This film without loss, yield and numerical damping, as in a static equilibrium.
     #[must_use]
     pub fn elastic(self) -> Self {
-        Self { loss_factor: 0.0, numerical_damping: 0.0, ..self }
+        Self { loss_factor: 0.0, numerical_damping: 0.0, yield_moment: None, ..self }
     }
 
     /// Bending stiffness D = E t³/(12(1−ν²)), N m.

@@ -97,12 +97,11 @@ pub fn solve(
     scene.shell.check()?;
     let start = Field::of(&scene.shell.positions);
     let supports = Supports::new(&scene.supports, &start);
-    let model = FilmModel::supported(&scene.film.elastic(), &scene.shell, |node| {
-        supports.hold_fully(node)
-    })?;
+    let material = scene.film.elastic();
+    let model = FilmModel::supported(&material, &scene.shell, |node| supports.hold_fully(node))?;
     let set = scene.solver.instruction_set;
     let held = |node| supports.hold_fully(node);
-    let energy_terms = Bending::terms(&scene.film, &model, &scene.shell, set, held);
+    let energy_terms = Bending::terms(&material, &model, &scene.shell, set, held);
     let film = FilmSystem {
         supports,
         energy_terms,

@@ -7,8 +7,8 @@
 //! gravity  −g·Σ m x            planes  −Σ F n·x
 //! ```
 //!
-//! Creep strain, what terms have yielded, and the history of contact are those of the state: they change only when a step is
-//! committed.
+//! Creep strain, what terms have yielded, and the history of contact are those of the state: they change only when a
+//! step is committed.
 
 use super::{FilmState, FilmSystem, PressureLoad, Workspace};
 use crate::geometry::field::Field;

@@ -24,7 +24,7 @@ pub struct FilmState {
     /// Creep strains, the history of the material, in the layout of the element loop; empty for film
     /// without loss.
     pub creep: Vec<[CreepStrain; 2]>,
-    /// What each further energy has yielded.
+    /// What each further energy has yielded: of bending the turn of each hinge, rad; empty for one that does not yield.
     pub yielded: Vec<Vec<f64>>,
     /// Enclosed volume V, m³.
     pub volume: f64,
@@ -92,7 +92,7 @@ impl FilmState {
                 .yielded
                 .iter()
                 .zip(&system.energy_terms)
-                .all(|(y, term)| y.len() == term.memory())
+                .all(|(y, term)| y.len() == term.yield_values())
             && self.planes.len() == system.supports.bodies.len()
     }
 }

@@ -118,7 +118,7 @@ impl FilmSystem {
 
     /// What the further energies have yielded before any motion: nothing.
     pub fn unyielded(&self) -> Vec<Vec<f64>> {
-        self.energy_terms.iter().map(|term| vec![0.0; term.memory()]).collect()
+        self.energy_terms.iter().map(|term| vec![0.0; term.yield_values()]).collect()
     }
 
     /// Energy of the further terms at these positions (m), J.
@@ -131,10 +131,10 @@ impl FilmSystem {
     }
 
     /// Lets the further energies yield at the positions of a state.
-    pub fn relax_terms(&self, state: &mut FilmState) -> Yielding {
+    pub fn let_terms_yield(&self, state: &mut FilmState) -> Yielding {
         let mut sum = Yielding::default();
         for (term, yielded) in self.energy_terms.iter().zip(&mut state.yielded) {
-            let Yielding { work, released } = term.relax(&state.positions, yielded);
+            let Yielding { work, released } = term.let_yield(&state.positions, yielded);
             sum.work += work * self.fault_factor(Term::YieldWork);
             sum.released += released;
         }

@@ -214,6 +214,16 @@ impl Settings {
 
     /// The film.
     pub fn film(&self, source: &Source) -> Result<Film, InputError> {
+        let (creases, yield_moment) = (self.creases(source)?, self.number("film.yield_moment"));
+        let needing =
+            [(creases.is_some(), "creases"), (yield_moment.is_some(), "film.yield_moment")];
+        for (_, name) in needing.into_iter().filter(|(given, _)| *given) {
+            if self.flag("film.bending") != Some(true) {
+                let problem = format!("is false, but the file has {name}");
+                let allowed = format!("true, for film with {name}");
+                return Err(source.error("film.bending", false, problem, allowed));
+            }
+        }
         Ok(Film {
             youngs_modulus: self.needed("film.youngs_modulus", source)?,
             poisson_ratio: self.needed("film.poisson_ratio", source)?,
@@ -221,8 +231,8 @@ impl Settings {
             thickness: self.needed("film.thickness", source)?,
             compression: self.needed("film.compression", source)?,
             bending: self.flag("film.bending").unwrap_or(false),
-            creases: self.creases(source)?,
-            yield_moment: self.number("film.yield_moment"),
+            creases,
+            yield_moment,
             numerical_damping: self.needed("film.numerical_damping", source)?,
             temperature: self.needed("film.temperature", source)?,
             loss_factor: self.needed("film.loss_factor", source)?,
@@ -237,16 +247,6 @@ impl Settings {
             Some(_) => Some(self.needed("creases.length_scale", source)?),
             None => self.number("creases.length_scale"),
         };
-        for (given, name) in [
-            (length_scale.is_some(), "creases"),
-            (self.number("film.yield_moment").is_some(), "film.yield_moment"),
-        ] {
-            if given && self.flag("film.bending") != Some(true) {
-                let problem = format!("is false, but the file has {name}");
-                let allowed = format!("true, for film with {name}");
-                return Err(source.error("film.bending", false, problem, allowed));
-            }
-        }
         Ok(length_scale.map(|length_scale| Creases { length_scale, rest_angle }))
     }
 

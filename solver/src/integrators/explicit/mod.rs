@@ -27,6 +27,7 @@ use crate::geometry::field::Field;
 use crate::integrators::energy_accounting::EnergyAccounting;
 use crate::integrators::interface::{Advance, Budget, Computed, Integrator, Interval, StepMotion};
 use crate::integrators::{IntegratorEntry, StoredIntegrator};
+use crate::mechanics::energy_term::Yielding;
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::damping::stable_share;
 use crate::mechanics::forces::membrane::stored_energy;
@@ -242,7 +243,11 @@ impl Explicit {
         let kick = 0.5 * (self.motion.last_step + length);
         let term_kick = self.motion.terms.step(system, length, remaining);
         if term_kick != 0.0 {
-            self.motion.accounting.works.material_loss += system.relax_terms(state).work;
+            // The trapezoid of the motion since the last kick holds what is released beyond the work. Before the first
+            // kick nothing has moved.
+            let Yielding { work, released } = system.let_terms_yield(state);
+            self.motion.accounting.works.material_loss +=
+                if self.motion.last_step > 0.0 { work } else { released };
             system.term_forces(&state.positions, &state.yielded, &mut self.workspace.forces);
         }
         self.kick(system, state, (kick, term_kick), length, end);

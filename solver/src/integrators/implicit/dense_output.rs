@@ -39,9 +39,6 @@ impl PendingStep {
                 *half = half.between(to, s);
             }
         }
-        for (now, to) in state.yielded.iter_mut().flatten().zip(to.yielded.iter().flatten()) {
-            *now = mix(*now, *to);
-        }
         state.gas = GasState {
             mass: mix(from.gas.mass, to.gas.mass),
             internal_energy: mix(from.gas.internal_energy, to.gas.internal_energy),

@@ -97,9 +97,12 @@ pub struct Implicit {
 /// Why film cannot be integrated implicitly, but for friction; `None` if it can.
 fn refuses(system: &FilmSystem) -> Option<Refusal> {
     let contact = system.contact.as_ref();
+    // Its steps are elastic: a fold beyond its yield moment would creep by the same length in a step of any length.
+    let yields = system.energy_terms.iter().any(|term| term.yield_values() > 0);
     let moving = |plates: &[Plate]| plates.iter().any(|plate| plate.motion.is_some());
     let refused = [
         (contact.is_some_and(|model| moving(&model.plates)), "moving plates", "plates at rest"),
+        (yields, "yield", "no film.yield_moment"),
         (!system.supports.movers.is_empty(), "moving supports", "supports at rest"),
     ];
     let refused = refused.into_iter().find(|(present, ..)| *present);

@@ -186,19 +186,17 @@ impl Implicit {
             planes += body.plane.force * travel;
         }
         let kinetic = system.kinetic_energy(state) - system.kinetic_energy(from);
-        state.positions.copy_from(positions);
-        let yielding = system.relax_terms(state);
         let works = &mut accounting.works;
         works.contact += contact;
         works.support += planes;
         works.damping += damped;
-        works.material_loss += loss + yielding.work;
-        works.numerical_dissipation +=
-            all + planes - damped - kinetic + yielding.released - yielding.work;
+        works.material_loss += loss;
+        works.numerical_dissipation += all + planes - damped - kinetic;
         if let PressureLoad::Overpressure(pressure) = system.pressure_load {
             works.gas += pressure * (volume - state.volume);
         }
         accounting.commit_gas(system, state, gas, volume);
+        state.positions.copy_from(positions);
         state.creep = creep;
     }
 

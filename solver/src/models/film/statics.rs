@@ -173,13 +173,7 @@ pub fn static_states(
 pub fn reference_scene(scene: &Scene) -> Scene {
     Scene {
         design: scene.design.clone(),
-        film: Film {
-            compression: 0.0,
-            bending: false,
-            creases: None,
-            yield_moment: None,
-            ..scene.film.elastic()
-        },
+        film: Film { compression: 0.0, bending: false, creases: None, ..scene.film.elastic() },
         gas: GasSupply {
             initial_mass: 0.0,
             windows: Vec::new(),

@@ -1,4 +1,4 @@
-//! Whether bending may change the results of a study, and whether its creases would yield where they do not.
+//! Whether bending may change the results of a study, and whether creases without `film.yield_moment` would yield.
 //!
 //! ```text
 //! l = (D/p)^(1/3)              length over which gas of pressure p bends film
@@ -81,13 +81,15 @@ pub(super) fn yielding_creases(study: &Study) -> Option<String> {
         })
     };
     let elastic = film_points(study).filter(|point| point.job.scene.film.yield_moment.is_none());
-    let largest = elastic.map(stress).fold(0.0, f64::max);
-    (largest > YIELD_STRESS).then(|| {
+    let largest = elastic.max_by(|a, b| stress(a).total_cmp(&stress(b)))?;
+    let thickness = largest.job.scene.film.thickness;
+    (stress(largest) > YIELD_STRESS).then(|| {
         format!(
             "note: creases stress the surface of the film by up to {} MPa; Kapton yields at {} MPa: set \
-             film.yield_moment (N), yield stress times thickness^2 over 4",
-            brief_number(1e-6 * largest),
-            brief_number(1e-6 * YIELD_STRESS)
+             film.yield_moment, {} N for that stress and film, or a longer creases.length_scale",
+            brief_number(1e-6 * stress(largest)),
+            brief_number(1e-6 * YIELD_STRESS),
+            brief_number(0.25 * YIELD_STRESS * thickness * thickness)
         )
     })
 }
