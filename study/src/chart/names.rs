@@ -1,4 +1,4 @@
-//! Plain names of quantities, for titles and axes: "peak velocity of the top ring" for `peak_vz`.
+//! Plain names of quantities, for titles and axes: "peak upward ring velocity" for `peak_vz`.
 
 use crate::render::figure::unit::Unit;
 
@@ -12,7 +12,13 @@ const MEASURES: &[(&str, &str)] = &[
     ("t_90_volume", "time to 90 % of the volume"),
     ("t_deployed", "time to deployment"),
     ("t_settled", "time to rest"),
-    ("peak_vz", "peak velocity of the top ring"),
+    ("peak_speed", "peak speed of the top ring"),
+    ("peak_acceleration", "peak acceleration of the top ring"),
+    ("peak_vz", "peak upward ring velocity"),
+    ("peak_downward_vz", "peak downward ring velocity"),
+    ("peak_pressure", "peak gas pressure"),
+    ("largest_z_rim", "largest height of the top ring"),
+    ("lowest_z_rim", "lowest height of the top ring after its rise"),
     ("t_peak_vz", "time of the peak velocity"),
     ("peak_kinetic_energy", "peak kinetic energy of the film"),
     ("overshoot", "overshoot of the height"),

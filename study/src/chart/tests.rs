@@ -127,8 +127,8 @@ fn every_point_of_a_measure_is_shown_with_its_outcome() {
         &texts,
         &[
             "Mass flow rate (g/s)",
-            "Peak velocity of the top ring over mass flow rate",
-            "Peak velocity of the top ring peak_vz (m/s)",
+            "Peak upward ring velocity over mass flow rate",
+            "Peak upward ring velocity peak_vz (m/s)",
             "Colour and marker: inflation strategy",
             "Line: number of panels N",
             "direct",
@@ -188,7 +188,7 @@ fn a_map_shows_each_value_and_each_outcome() {
         &texts,
         &[
             "Inflation strategy direct",
-            "Peak velocity of the top ring over mass flow rate and number of panels",
+            "Peak upward ring velocity over mass flow rate and number of panels",
             "Mass flow rate (g/s)",
             "20.0",
             "31.0",
@@ -287,7 +287,7 @@ fn a_chart_has_the_units_of_the_study() {
         check::figure(&over::svg(&source(&table), "peak_vz", "mass_flow_rate", &[]).unwrap());
     shows(
         &texts,
-        &["Mass flow rate (kg/h)", "3.6", "Peak velocity of the top ring peak_vz (km/h)"],
+        &["Mass flow rate (kg/h)", "3.6", "Peak upward ring velocity peak_vz (km/h)"],
     );
 }
 

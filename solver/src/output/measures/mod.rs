@@ -9,6 +9,7 @@ use crate::output::history::History;
 use crate::scene::timeline::Timeline;
 
 mod hold;
+mod motion;
 mod rebound;
 mod reference;
 mod ringing;
@@ -73,8 +74,14 @@ pub struct Measures {
     /// First time at which the smaller of V and `z_rim`, each over its threshold of `deployed` and then
     /// smoothed, reaches 1, s.
     pub t_deployed: Option<f64>,
+    /// Largest mean speed of the top ring over 5 ms, up or down, m/s.
+    pub peak_speed: Option<f64>,
+    /// Largest mean acceleration of the top ring over twice 5 ms, up or down, m/s².
+    pub peak_acceleration: Option<f64>,
     /// Largest vz, m/s.
     pub peak_vz: Option<f64>,
+    /// Largest −vz, m/s.
+    pub peak_downward_vz: Option<f64>,
     /// Time of the largest vz, s.
     pub t_peak_vz: Option<f64>,
     /// Largest kinetic energy, J.
@@ -83,6 +90,10 @@ pub struct Measures {
     pub first_peak_z_rim: Option<f64>,
     /// `z_rim` at the first minimum after its first peak, m.
     pub first_minimum_z_rim: Option<f64>,
+    /// Largest `z_rim`, m.
+    pub largest_z_rim: Option<f64>,
+    /// Least `z_rim` from `t_50_z_rim` on, m.
+    pub lowest_z_rim: Option<f64>,
     /// Largest `z_rim` divided by the static height at the final overpressure, minus 1.
     pub overshoot: Option<f64>,
     /// Root mean square of vz over 0.2 s after `t_deployed`, m/s.
@@ -98,6 +109,8 @@ pub struct Measures {
     pub final_volume: Option<f64>,
     /// Last p, Pa.
     pub final_pressure: Option<f64>,
+    /// Largest p, Pa.
+    pub peak_pressure: Option<f64>,
     /// Last T, K.
     pub final_temperature: Option<f64>,
     /// Largest principal second Piola-Kirchhoff film stress, Pa.
@@ -142,21 +155,28 @@ pub fn measure(
     let z_rim = column("z_rim");
     let (first_peak, first_minimum) = first_rebound(z_rim);
     let peak_kinetic = peak(kinetic);
+    let [peak_speed, peak_acceleration] = motion::peaks(time, z_rim);
+    let largest = |values: &[f64]| peak(values).map(|(_, value)| value);
     let judged = reference.map(|reference| judge(history, reference, timeline, done));
     Measures {
+        peak_speed,
+        peak_acceleration,
         peak_vz: peak_vz.map(|(_, value)| value),
+        peak_downward_vz: vz.iter().map(|vz| -vz).reduce(f64::max),
         t_peak_vz: peak_vz.map(|(index, _)| time[index]),
         peak_kinetic_energy: peak_kinetic.map(|(_, value)| value),
         first_peak_z_rim: first_peak.map(|index| z_rim[index]),
         first_minimum_z_rim: first_minimum.map(|index| z_rim[index]),
         t_settled: peak_kinetic.and_then(|(index, value)| settled(time, kinetic, index, value)),
+        largest_z_rim: largest(z_rim),
         final_z_rim: last("z_rim"),
         final_volume: last("volume"),
+        peak_pressure: largest(column("pressure")),
         final_pressure: Some(final_pressure),
         final_overpressure: final_overpressure(history, timeline),
         final_temperature: last("temperature"),
         film_stress: Some(film_stress),
-        peak_lid_force: peak(column("lid_force")).map(|(_, value)| value),
+        peak_lid_force: largest(column("lid_force")),
         ..judged.unwrap_or_default()
     }
 }
@@ -209,7 +229,10 @@ fn times(
         reached(&smaller_ratio.collect::<Vec<f64>>(), 1.0)
     });
     let ringing = t_deployed.and_then(|start| ringing::ringing(time, column("vz"), start));
+    let from_half =
+        time.iter().zip(z_rim).filter(|(t, _)| t_50_z_rim.is_some_and(|half| **t >= half));
     Measures {
+        lowest_z_rim: from_half.map(|(_, z)| *z).reduce(f64::min),
         design_height: Some(design.height),
         design_volume: Some(design.volume),
         t_50_z_rim,

@@ -75,6 +75,13 @@ fn a_ramp_has_the_expected_measures() {
     near(m.height_ratio, 1.0);
     near(m.overshoot, 0.0);
     near(m.peak_vz, 10.0);
+    near(m.peak_speed, 10.0);
+    near(m.peak_downward_vz, 0.0);
+    // It stops within one of the two times of 5 ms.
+    near(m.peak_acceleration, 10.0 / 5e-3);
+    near(m.lowest_z_rim, 0.5);
+    near(m.largest_z_rim, 1.0);
+    near(m.peak_pressure, 5.0);
     near(m.peak_kinetic_energy, 50.0);
     near(m.final_z_rim, 1.0);
     near(m.final_volume, 2.0);
@@ -89,6 +96,23 @@ fn a_ramp_has_the_expected_measures() {
     assert!(m.t_peak_vz.unwrap() <= 0.1 && m.t_settled.unwrap() > 0.0995);
     // It stops dead at 0.1 s, before t_deployed.
     assert!(m.ringing_rms.unwrap() < 1e-9, "{:?}", m.ringing_rms);
+}
+
+/// A fall that is twice as fast as the rise, and a shake of 1 ms that is faster than both.
+#[test]
+fn the_peak_speed_is_that_of_the_fall_and_no_shake_counts() {
+    let m = measured(ramp, |t| {
+        let shake = if (t - 0.5).abs() < 0.5e-3 { 0.02 } else { 0.0 };
+        ramp(t) - ((t - 0.2) / 0.05).clamp(0.0, 1.0) * 0.8 + shake
+    });
+    let near = |value: Option<f64>, expected: f64| {
+        assert!((value.unwrap() - expected).abs() < 1e-6 * expected, "{value:?} {expected}");
+    };
+    near(m.peak_speed, 16.0);
+    near(m.peak_vz, 20.0);
+    near(m.peak_downward_vz, 20.0);
+    near(m.lowest_z_rim, 0.2);
+    near(m.largest_z_rim, 1.0);
 }
 
 #[test]

@@ -189,9 +189,18 @@ columns! {
     TDeployedSinceRelease "t_deployed_since_release" Number ["s"] Measures Smaller
         "t_deployed minus the time at which the lid is released; equal to t_deployed without a lid"
         end => end.since_release(|measures| measures.t_deployed);
+    PeakSpeed "peak_speed" Number ["m/s"] Measures Smaller
+        "largest speed of the top ring, up or down: mean over 5 ms"
+        end => end.measure(|measures| measures.peak_speed);
+    PeakAcceleration "peak_acceleration" Number ["m/s2"] Measures Smaller
+        "largest acceleration of the top ring, up or down: change of its mean speed from 5 ms to the next, over 5 ms"
+        end => end.measure(|measures| measures.peak_acceleration);
     PeakVz "peak_vz" Number ["m/s"] Measures Smaller
         "largest upward speed of the top ring: mean velocity of its nodes along z"
         end => end.measure(|measures| measures.peak_vz);
+    PeakDownwardVz "peak_downward_vz" Number ["m/s"] Measures Smaller
+        "largest downward speed of the top ring: minus the least mean velocity of its nodes along z"
+        end => end.measure(|measures| measures.peak_downward_vz);
     TPeakVz "t_peak_vz" Number ["s"] Measures Neither
         "time of peak_vz"
         end => end.measure(|measures| measures.t_peak_vz);
@@ -216,12 +225,21 @@ columns! {
     TSettled "t_settled" Number ["s"] Measures Smaller
         "first time from which the kinetic energy stays below 1e-4 of its peak for 50 ms"
         end => end.measure(|measures| measures.t_settled);
+    LargestZRim "largest_z_rim" Number ["m"] Measures Neither
+        "largest z_rim"
+        end => end.measure(|measures| measures.largest_z_rim);
+    LowestZRim "lowest_z_rim" Number ["m"] Measures Neither
+        "least z_rim from t_50_z_rim on: how far it falls back"
+        end => end.measure(|measures| measures.lowest_z_rim);
     FinalZRim "final_z_rim" Number ["m"] Measures Neither
         "last mean height of the top ring"
         end => end.measure(|measures| measures.final_z_rim);
     FinalVolume "final_volume" Number ["m3"] Measures Neither
         "last volume"
         end => end.measure(|measures| measures.final_volume);
+    PeakPressure "peak_pressure" Number ["Pa"] Measures Smaller
+        "largest gas pressure"
+        end => end.measure(|measures| measures.peak_pressure);
     FinalPressure "final_pressure" Number ["Pa"] Measures Neither
         "last gas pressure"
         end => end.measure(|measures| measures.final_pressure);

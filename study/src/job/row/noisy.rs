@@ -11,8 +11,11 @@ use super::ColumnId;
 pub const HEADLINE: [ColumnId; 2] = [ColumnId::T90ZRimSinceRelease, ColumnId::PeakKineticEnergy];
 
 /// Noisy measures.
-pub const NOISY: [ColumnId; 11] = [
+pub const NOISY: [ColumnId; 14] = [
+    ColumnId::PeakSpeed,
+    ColumnId::PeakAcceleration,
     ColumnId::PeakVz,
+    ColumnId::PeakDownwardVz,
     ColumnId::TPeakVz,
     ColumnId::FirstMinimumZRim,
     ColumnId::RingingRms,

@@ -1,0 +1,29 @@
+//! Peaks of the motion of the top ring, as means over τ = [`MEAN_TIME`]: a shake that is over sooner hardly counts.
+//!
+//! ```text
+//! speed          largest |z(t + τ) − z(t)|/τ
+//! acceleration   largest |z(t + τ) − 2 z(t) + z(t − τ)|/τ²
+//! ```
+//!
+//! z is linear between samples; t is the time of a sample.
+
+/// τ, s. Chosen: half of the fastest rise of the paper's capsule, and long against the drumming of film.
+pub(super) const MEAN_TIME: f64 = 0.005;
+
+/// Speed, m/s, and acceleration, m/s², of a series that lasts long enough.
+pub(super) fn peaks(time: &[f64], z: &[f64]) -> [Option<f64>; 2] {
+    let at = |t: f64| {
+        let next = time.partition_point(|sample| *sample < t);
+        let before = *time.get(next.checked_sub(1)?)?;
+        let share = (t - before) / (time.get(next)? - before);
+        Some(z[next - 1] + share * (z[next] - z[next - 1]))
+    };
+    let largest = |values: &dyn Fn(f64, f64) -> Option<f64>| {
+        time.iter().zip(z).filter_map(|(t, z)| values(*t, *z)).map(f64::abs).reduce(f64::max)
+    };
+    let speed = largest(&|t, z| Some((at(t + MEAN_TIME)? - z) / MEAN_TIME));
+    let acceleration = largest(&|t, z| {
+        Some((at(t + MEAN_TIME)? - 2.0 * z + at(t - MEAN_TIME)?) / (MEAN_TIME * MEAN_TIME))
+    });
+    [speed, acceleration]
+}
