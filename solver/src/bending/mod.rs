@@ -263,9 +263,10 @@ impl EnergyTerm for Bending {
     }
 }
 
-/// Rounds of yielding at most, and how far above M l, as a share of it, moments may be before the last. Chosen: 70 rounds
-/// halve a moment of 2 M l where L* is a tenth of the height of the elements, and a step of motion adds less.
+/// Rounds of yielding at most. Chosen: they halve a moment of 2 M l in creases of an L* down to a twentieth of the height
+/// of the elements, and a step of motion adds less.
 const MAX_ROUNDS: u32 = 200;
+/// How far above M l, as a share of it, moments may be before the last round. Chosen: below the errors of a mesh.
 const MAX_EXCESS: f64 = 1e-2;
 
 /// The product of two columns, without what one has past the end of the other.

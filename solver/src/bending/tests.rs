@@ -285,6 +285,26 @@ fn a_crease_yields_and_springs_back() {
     }
 }
 
+/// The stiffer a crease is against the film beside it, the more rounds it needs.
+#[test]
+fn a_stiff_crease_yields_within_the_rounds() {
+    let shell = creased();
+    // A twentieth of the height of the elements.
+    let creases = Some(Creases { length_scale: 0.01, rest_angle: None });
+    let at = Field::of(&fold(2.2));
+    let of = |yield_moment: Option<f64>| {
+        let film = Film { creases, yield_moment, ..FILM };
+        let model = FilmModel::of_shell(&film, &shell).expect("a film");
+        let bending = Bending::new(&film, &model, &shell, InstructionSet::detect(), |_| false);
+        let mut yielded = vec![0.0; bending.yield_values()];
+        bending.let_yield(&at, &mut yielded);
+        bending.moments(&at, &yielded).1[0]
+    };
+    let elastic = of(None);
+    let ratio = of(Some(0.5 * elastic / 0.3)) / (0.5 * elastic);
+    assert!((1.0..1.0 + MAX_EXCESS).contains(&ratio), "{ratio}");
+}
+
 #[test]
 fn no_edge_of_yielding_film_bears_more_than_its_yield_moment() {
     let (shell, positions) = crumpled();

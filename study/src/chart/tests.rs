@@ -285,10 +285,7 @@ fn a_chart_has_the_units_of_the_study() {
     }
     let texts =
         check::figure(&over::svg(&source(&table), "peak_vz", "mass_flow_rate", &[]).unwrap());
-    shows(
-        &texts,
-        &["Mass flow rate (kg/h)", "3.6", "Peak upward ring velocity peak_vz (km/h)"],
-    );
+    shows(&texts, &["Mass flow rate (kg/h)", "3.6", "Peak upward ring velocity peak_vz (km/h)"]);
 }
 
 #[test]

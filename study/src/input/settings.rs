@@ -215,14 +215,11 @@ impl Settings {
     /// The film.
     pub fn film(&self, source: &Source) -> Result<Film, InputError> {
         let (creases, yield_moment) = (self.creases(source)?, self.number("film.yield_moment"));
-        let needing =
-            [(creases.is_some(), "creases"), (yield_moment.is_some(), "film.yield_moment")];
-        for (_, name) in needing.into_iter().filter(|(given, _)| *given) {
-            if self.flag("film.bending") != Some(true) {
-                let problem = format!("is false, but the file has {name}");
-                let allowed = format!("true, for film with {name}");
-                return Err(source.error("film.bending", false, problem, allowed));
-            }
+        let bends = creases.map(|_| "creases").or(yield_moment.map(|_| "film.yield_moment"));
+        if let Some(name) = bends.filter(|_| self.flag("film.bending") != Some(true)) {
+            let problem = format!("is false, but the file has {name}");
+            let allowed = format!("true, for film with {name}");
+            return Err(source.error("film.bending", false, problem, allowed));
         }
         Ok(Film {
             youngs_modulus: self.needed("film.youngs_modulus", source)?,

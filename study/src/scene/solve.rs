@@ -254,7 +254,6 @@ fn begin(scene: &SceneFile, pauses: &Pauses, files: &dyn Files) -> Result<(FilmR
         };
         refuse(format!("{error}{next}"))
     })?;
-    let model = FilmRun::resume(&scene.film, rings, &scene.seating, checkpoint.state)
-        .map_err(|error| refuse(format!("{error}{START_AGAIN}")))?;
-    Ok((model, checkpoint.run))
+    FilmRun::resume(&scene.film, rings, &scene.seating, checkpoint)
+        .map_err(|error| refuse(format!("{error}{START_AGAIN}")))
 }

@@ -151,19 +151,19 @@ impl FilmRun {
         Ok(Self::with(capsule::start(scene, seating)?, scene, rings))
     }
 
-    /// The film of a scene in a stored state. The run continues with the same bits.
+    /// The film of a scene in a stored state, and its run. The run continues with the same bits.
     pub fn resume(
         scene: &FilmScene,
         rings: Option<Rings>,
         seating: &[PrescribedNodes],
-        stored: StoredFilm,
-    ) -> Result<Self, SceneError> {
+        Checkpoint { state, run, .. }: Checkpoint<StoredFilm, Run>,
+    ) -> Result<(Self, Run), SceneError> {
         let (mut system, settings, _) = capsule::constants(scene)?;
         system.supports.movers.extend(seating.iter().cloned());
-        let film = FilmSimulation::resume(system, settings, stored).ok_or_else(|| {
-            SceneError::invalid("mesh", "the stored state belongs to another film")
-        })?;
-        Ok(Self::with(film, scene, rings))
+        let other = || SceneError::invalid("mesh", "the stored state belongs to another film");
+        let film = FilmSimulation::resume(system, settings, state).ok_or_else(other)?;
+        let film = Self::with(film, scene, rings);
+        if run.fits(&film) { Ok((film, run)) } else { Err(other()) }
     }
 
     /// Film in motion that a scene describes, with what the scene records.

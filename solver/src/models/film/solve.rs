@@ -60,9 +60,7 @@ fn complete(
     }
     let (mut model, run) = match checkpoint {
         None => (FilmRun::of(&film, Some(rings))?, Run::default()),
-        Some(Checkpoint { state, run, .. }) => {
-            (FilmRun::resume(&film, Some(rings), &[], state)?, run)
-        }
+        Some(stored) => FilmRun::resume(&film, Some(rings), &[], stored)?,
     };
     if !observer.prepares() {
         return Ok(Deployment::cancelled());

@@ -138,6 +138,12 @@ pub struct Run {
 }
 
 impl Run {
+    /// Whether it can be a run of this model: every sample has a value of each of its tracks.
+    pub fn fits(&self, model: &dyn Model) -> bool {
+        let tracks = model.tracks().len();
+        self.tracks.len() == self.samples.len() && self.tracks.iter().all(|row| row.len() == tracks)
+    }
+
     /// Continues to the end of the timeline, as [`run`] does.
     pub fn complete(
         mut self,

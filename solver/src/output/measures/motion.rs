@@ -7,8 +7,9 @@
 //!
 //! z is linear between samples; t is the time of a sample.
 
-/// τ, s. Chosen: half of the fastest rise of the paper's capsule, and long against the drumming of film.
-pub(super) const MEAN_TIME: f64 = 0.005;
+/// τ, s. Chosen: a sixth of the time in which 5 g/s raise the paper's capsule to half of its height. Then seed, step,
+/// damping and contact distance change its peak speed by at most 2 %.
+const MEAN_TIME: f64 = 0.005;
 
 /// Speed, m/s, and acceleration, m/s², of a series that lasts long enough.
 pub(super) fn peaks(time: &[f64], z: &[f64]) -> [Option<f64>; 2] {

@@ -12,12 +12,12 @@ pub const HEADLINE: [ColumnId; 2] = [ColumnId::T90ZRimSinceRelease, ColumnId::Pe
 
 /// Noisy measures.
 pub const NOISY: [ColumnId; 14] = [
-    ColumnId::PeakSpeed,
     ColumnId::PeakAcceleration,
     ColumnId::PeakVz,
     ColumnId::PeakDownwardVz,
     ColumnId::TPeakVz,
     ColumnId::FirstMinimumZRim,
+    ColumnId::LowestZRim,
     ColumnId::RingingRms,
     ColumnId::RingingFrequency,
     ColumnId::TSettled,

@@ -12,9 +12,6 @@ use crate::job::status::Status;
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::nearest::did_you_mean;
 
-/// What is allowed for the name of a column, where the nearest name says the rest.
-const ALL_COLUMNS: &str = "a column of `billow table --columns all`";
-
 /// The column with that name, which `option` asks for.
 ///
 /// # Errors
@@ -23,8 +20,10 @@ pub fn find<'a>(table: &'a Table, option: &str, name: &str) -> Result<&'a Column
     let names = || table.columns.iter().map(|column| column.name.as_str());
     table.column(name).ok_or_else(|| {
         let hint = did_you_mean(name, names());
-        let all = || names().collect::<Vec<_>>().join(", ");
-        let allowed = if hint.is_some() { ALL_COLUMNS.to_owned() } else { all() };
+        let allowed = match &hint {
+            Some(_) => "a column of `billow table --columns all`".to_owned(),
+            None => names().collect::<Vec<_>>().join(", "),
+        };
         Error::invalid_option(option, name, "no such column", allowed, hint.unwrap_or_default())
     })
 }
