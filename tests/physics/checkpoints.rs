@@ -2,6 +2,7 @@
 
 use billow_solver::models;
 use billow_solver::models::run::run;
+use billow_solver::platform::seal;
 use billow_solver::scene::paper;
 
 use crate::prelude::*;
@@ -137,6 +138,21 @@ fn a_checkpoint_of_another_model_is_refused() {
     let stored = Stored { fingerprint: "scene", text };
     let refused = models::resume(InstructionSet::detect(), &scene, &stored, &mut Unobserved);
     assert!(refused.unwrap_err().to_string().contains("has no checkpoints"));
+}
+
+/// Every sample has a value of each track: here one is gone, and the checksum is that of the changed text.
+#[test]
+fn a_checkpoint_without_a_value_of_a_sample_is_refused() {
+    let scene = film();
+    let mut pausing = Pausing::new(10, Some(1));
+    solve(&scene, &mut pausing);
+    let text = seal::open(&pausing.stored.unwrap()).unwrap();
+    let mut changed: serde_json::Value = serde_json::from_str(&text).unwrap();
+    changed["run"]["tracks"][0].as_array_mut().unwrap().pop().unwrap();
+    let text = &seal::seal(&changed.to_string());
+    let stored = Stored { fingerprint: "scene", text };
+    let refused = models::resume(InstructionSet::detect(), &scene, &stored, &mut Unobserved);
+    assert!(refused.unwrap_err().to_string().contains("belongs to another film"));
 }
 
 /// A failure keeps its step and its place, too: the monitor tests blocks of steps.
