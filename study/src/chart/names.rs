@@ -18,7 +18,7 @@ const MEASURES: &[(&str, &str)] = &[
     ("peak_downward_vz", "peak downward ring velocity"),
     ("peak_pressure", "peak gas pressure"),
     ("largest_z_rim", "largest height of the top ring"),
-    ("lowest_z_rim", "lowest height of the top ring after its rise"),
+    ("lowest_z_rim", "lowest height after the first peak"),
     ("t_peak_vz", "time of the peak velocity"),
     ("peak_kinetic_energy", "peak kinetic energy of the film"),
     ("overshoot", "overshoot of the height"),

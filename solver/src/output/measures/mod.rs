@@ -92,7 +92,7 @@ pub struct Measures {
     pub first_minimum_z_rim: Option<f64>,
     /// Largest `z_rim`, m.
     pub largest_z_rim: Option<f64>,
-    /// Least `z_rim` from `t_50_z_rim` on, m.
+    /// Least `z_rim` after its first peak, m.
     pub lowest_z_rim: Option<f64>,
     /// Largest `z_rim` divided by the static height at the final overpressure, minus 1.
     pub overshoot: Option<f64>,
@@ -169,6 +169,7 @@ pub fn measure(
         first_minimum_z_rim: first_minimum.map(|index| z_rim[index]),
         t_settled: peak_kinetic.and_then(|(index, value)| settled(time, kinetic, index, value)),
         largest_z_rim: largest(z_rim),
+        lowest_z_rim: first_peak.and_then(|peak| z_rim[peak..].iter().copied().reduce(f64::min)),
         final_z_rim: last("z_rim"),
         final_volume: last("volume"),
         peak_pressure: largest(column("pressure")),
@@ -229,10 +230,7 @@ fn times(
         reached(&smaller_ratio.collect::<Vec<f64>>(), 1.0)
     });
     let ringing = t_deployed.and_then(|start| ringing::ringing(time, column("vz"), start));
-    let from_half =
-        time.iter().zip(z_rim).filter(|(t, _)| t_50_z_rim.is_some_and(|half| **t >= half));
     Measures {
-        lowest_z_rim: from_half.map(|(_, z)| *z).reduce(f64::min),
         design_height: Some(design.height),
         design_volume: Some(design.volume),
         t_50_z_rim,

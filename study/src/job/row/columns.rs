@@ -229,7 +229,7 @@ columns! {
         "largest z_rim"
         end => end.measure(|measures| measures.largest_z_rim);
     LowestZRim "lowest_z_rim" Number ["m"] Measures Neither
-        "least z_rim from t_50_z_rim on: how far it falls back"
+        "least z_rim after its first peak: how far it falls back"
         end => end.measure(|measures| measures.lowest_z_rim);
     FinalZRim "final_z_rim" Number ["m"] Measures Neither
         "last mean height of the top ring"
