@@ -76,8 +76,10 @@ fn the_answer_counts_points_and_names_the_gentler_strategy() {
         let worst = margins.filter_map(|run| run["smallest_margin"].as_f64());
         assert_eq!(row["smallest_margin"].as_f64(), worst.reduce(f64::min));
     }
-    let output = folder.run(&["compare", "--rank", "--measures", "peak_vz"]);
+    let output = folder.run(&["compare", "--rank", "--measures", "smallest_margin,peak_vz"]);
     let said = stderr(&output);
+    let order = "order: points not safe (peak_vz < 41 m/s, deployed), runs not safe, smallest_margin, peak_vz\n";
+    assert!(said.contains(order), "{said}");
     assert!(said.contains("over 3 sets of points that are equal in mass_flow_rate"), "{said}");
     folder.refuses(&["compare", "--rank", "--by", "strateg"], "did you mean strategy?");
     let measures = ["compare", "--rank", "--measures", "final_pressure"];

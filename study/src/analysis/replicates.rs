@@ -5,8 +5,8 @@
 //! value = median over the trusted runs;  range = least to largest;  deployed, safe: k of n
 //! ```
 //! The condensed table has one row per point and is a table as any other: charts and comparisons read it in
-//! the place of the rows. A word, or a truth value, is that of all runs or null; `smallest_margin_of` is that of
-//! the run with the smallest margin, `verdict_depends_on` that of the first run that has one.
+//! the place of the rows. A word, or a truth value, is that of all runs or null; `verdict_depends_on` is that of the
+//! first run that has one. `smallest_margin` is the smallest over the runs, with its measure, not their median.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -163,14 +163,6 @@ impl Runs {
         Some((margin, names.cells[row].to_string(), row))
     }
 
-    /// The run with the smallest margin of the limits.
-    fn least(&self, table: &Table) -> Option<usize> {
-        let margin = table.column(DerivedColumn::SmallestMargin.name())?;
-        let value = |row: usize| Some((measured(table, margin, row)?, row));
-        let runs = self.measured.iter().filter_map(|row| value(*row));
-        runs.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, row)| row)
-    }
-
     /// The runs in some rows of a table.
     fn of(table: &Table, all: Vec<usize>) -> Self {
         let status = |wanted: fn(Status) -> bool| {
@@ -284,7 +276,12 @@ fn condensed(table: &Table, runs: &[Runs], replicates: &[String], statistic: Sta
         if is_same && keeps_type && column.name != SAME_JOB_AS && std::ptr::eq(values_of, column) {
             return column.clone();
         }
+        let is_margin = column.name == DerivedColumn::SmallestMargin.name();
         let cell = |runs: &Runs| {
+            if is_margin && !matches!(statistic, Statistic::Largest) {
+                let worst = runs.worst_margin(table);
+                return worst.map_or(Value::Null, |(margin, ..)| Value::Number(margin));
+            }
             if is_measure {
                 let values =
                     runs.measured.iter().filter_map(|row| measured(table, values_of, *row));
@@ -304,7 +301,8 @@ fn condensed(table: &Table, runs: &[Runs], replicates: &[String], statistic: Sta
                 return Value::Text(status(table, runs).name().to_owned());
             }
             if column.name == DerivedColumn::SmallestMarginOf.name() {
-                return runs.least(table).map_or(Value::Null, |row| column.cells[row].clone());
+                let worst = runs.worst_margin(table);
+                return worst.map_or(Value::Null, |(_, name, _)| Value::Text(name));
             }
             if column.name == DerivedColumn::VerdictDependsOn.name() {
                 let mut cells = runs.rows.iter().map(|row| &column.cells[*row]);

@@ -2,14 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use super::{Basis, Candidate, Field, RankedMeasure, Ranking, is_better, ranked_points};
+use super::{Basis, Candidate, Field, RankedMeasure, Ranking, penalty, ranked_points};
 use crate::analysis::compare::{Pair, Range, Set, Tally, median_range};
 use crate::analysis::replicates::Runs;
 use crate::analysis::statistics::Spread;
 use crate::input::keys::numerical;
 use crate::input::value::Value;
 use crate::job::proportion::Proportion;
-use crate::job::row::BetterSide;
+use crate::job::row::{BetterSide, DerivedColumn};
 
 impl Field<'_> {
     /// The candidates in their order.
@@ -89,9 +89,8 @@ impl Field<'_> {
         let mut best: Option<(usize, f64)> = None;
         for (position, (_, candidate)) in found.iter().enumerate() {
             let value = median(position).filter(|_| always(candidate));
-            if let Some(value) =
-                value.filter(|value| best.is_none_or(|(_, best)| is_better(measure, *value, best)))
-            {
+            let value = value.map(|value| penalty(measure, value));
+            if let Some(value) = value.filter(|value| best.is_none_or(|(_, best)| *value < best)) {
                 best = Some((position, value));
             }
         }
@@ -188,7 +187,12 @@ impl Field<'_> {
 
     /// The smallest margin over some points.
     fn worst(&self, points: &[usize]) -> Option<(f64, String)> {
-        let margins = points.iter().filter_map(|point| self.margins[*point].clone());
+        let margins = self.table.column(DerivedColumn::SmallestMargin.name())?;
+        let names = self.table.column(DerivedColumn::SmallestMarginOf.name())?;
+        let margins = points.iter().filter_map(|point| match margins.cells[*point] {
+            Value::Number(margin) => Some((margin, names.cells[*point].to_string())),
+            _ => None,
+        });
         margins.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 

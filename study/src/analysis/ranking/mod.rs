@@ -3,8 +3,8 @@
 //! ```text
 //! candidate = one combination of values of the ranked parameters
 //! set       = points that are equal in all other parameters: the same conditions
-//! order     = fewest points not safe, then the smallest proportion of runs not safe, then the largest worst
-//!             margin, then the medians of the measures
+//! order     = fewest points not safe, then the smallest proportion of runs not safe, then the medians of the
+//!             measures, the smallest margin among them where it is asked for
 //! ```
 //! Only sets in which every ranked candidate has a point that has ended count, so all candidates are judged by
 //! the same conditions. Without limits the points and runs that do not deploy take the place of those not safe;
@@ -17,7 +17,7 @@ use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::proportion::Proportion;
 use crate::job::result_limit::ResultLimit;
-use crate::job::row::{BetterSide, ColumnId};
+use crate::job::row::{BetterSide, ColumnId, DerivedColumn};
 use crate::store::table::{Column, Table};
 use crate::study::Zipped;
 
@@ -29,8 +29,8 @@ mod table;
 use sets::{candidates, sets, shared};
 
 /// The measures of a ranking where none are asked for.
-pub const DEFAULT_MEASURES: [ColumnId; 3] =
-    [ColumnId::PeakVz, ColumnId::PeakKineticEnergy, ColumnId::T90ZRimSinceRelease];
+pub const DEFAULT_MEASURES: [&str; 3] =
+    ["peak_vz", "peak_kinetic_energy", "t_90_z_rim_since_release"];
 
 /// What is ranked, and by what.
 pub struct RankingInput<'a> {
@@ -44,8 +44,8 @@ pub struct RankingInput<'a> {
     pub replicates: &'a [String],
     /// The limits of the study.
     pub limits: &'a [ResultLimit],
-    /// The measures, the most important one first. Each has a better side.
-    pub measures: &'a [ColumnId],
+    /// The names of the measures, the most important one first. Each has a better side, or is the smallest margin.
+    pub measures: &'a [&'a str],
     /// The parameters on the axis of one.
     pub zipped: &'a dyn Fn(&str) -> Vec<Zipped>,
 }
@@ -100,7 +100,7 @@ pub struct RankedMeasure {
 /// What orders candidates before their measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Basis {
-    /// Safe points, safe runs, then the worst margin.
+    /// Safe points, then safe runs.
     Limits,
     /// Deployed points, then deployed runs.
     Verdicts,
@@ -146,8 +146,8 @@ struct Field<'a> {
     chosen: Vec<usize>,
     sets: Vec<Set>,
     basis: Basis,
-    /// The smallest margin of each point, with its measure.
-    margins: Vec<Option<(f64, String)>>,
+    /// Position among the measures at which the smallest margin orders.
+    margin_at: Option<usize>,
 }
 
 impl Ranking {
@@ -176,12 +176,10 @@ impl Ranking {
             ));
         };
         let zipped = (input.zipped)("seed");
-        let measures = input.measures.iter().filter_map(|id| table.column(id.name()));
+        let is_margin = |name: &&str| *name == DerivedColumn::SmallestMargin.name();
+        let measures = input.measures.iter().filter(|name| !is_margin(name));
+        let measures = measures.filter_map(|name| table.column(name));
         let measures = measures.map(|column| Measure::of_points(&points, &ended, column, &zipped));
-        let margins = points.runs.iter();
-        let margins = margins.map(|runs| {
-            runs.worst_margin(input.table).map(|(margin, measure, _)| (margin, measure))
-        });
         let field = Field {
             points: &points,
             by: input.by,
@@ -189,7 +187,7 @@ impl Ranking {
             measures: measures.collect(),
             sets: kept,
             basis: basis(input.limits, &points),
-            margins: margins.collect(),
+            margin_at: input.measures.iter().position(is_margin),
             chosen,
         };
         let mut ranking = field.ranked(&values);
@@ -254,10 +252,10 @@ impl Ranking {
     }
 }
 
-/// Which of two values of a measure is better, without a tolerance.
-fn is_better(measure: &Measure<'_>, a: f64, b: f64) -> bool {
+/// A value of a measure, with the sign with which the smaller one is better.
+fn penalty(measure: &Measure<'_>, value: f64) -> f64 {
     let side = ColumnId::from_name(&measure.column.name).map(|id| id.column().better);
-    if side == Some(BetterSide::Larger) { a > b } else { a < b }
+    if side == Some(BetterSide::Larger) { -value } else { value }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 
 use std::cmp::Ordering;
 
-use super::{Basis, Candidate, Field, is_better};
+use super::{Basis, Candidate, Field, penalty};
 use crate::job::proportion::Proportion;
 
 /// Significant digits of the margins and medians that order candidates. Chosen: far above rounding errors.
@@ -17,10 +17,7 @@ impl Field<'_> {
         let not_safe = |c: &Candidate| c.points - c.safe;
         let not_deployed = |c: &Candidate| c.points - c.deployed;
         let first = match self.basis {
-            Basis::Limits => {
-                let points = not_safe(a).cmp(&not_safe(b));
-                points.then_with(|| missed(a.missed, b.missed)).then_with(|| margins(a, b))
-            }
+            Basis::Limits => not_safe(a).cmp(&not_safe(b)).then_with(|| missed(a.missed, b.missed)),
             Basis::Verdicts => {
                 not_deployed(a).cmp(&not_deployed(b)).then_with(|| missed(a.missed, b.missed))
             }
@@ -29,26 +26,24 @@ impl Field<'_> {
         first.then_with(|| self.measures(a, b))
     }
 
-    /// By the medians of the measures, one after the other. A candidate without a median comes last.
+    /// By the medians of the measures, one after the other, the smallest margin among them where it is asked for. A candidate
+    /// without a value comes last.
     fn measures(&self, a: &Candidate, b: &Candidate) -> Ordering {
-        let medians =
-            |c: &Candidate, index: usize| c.measures[index].map(|spread| rounded(spread.median));
-        let orders = self.measures.iter().enumerate().map(|(index, measure)| {
-            match (medians(a, index), medians(b, index)) {
-                (Some(a), Some(b)) if is_better(measure, a, b) => Ordering::Less,
-                (Some(a), Some(b)) if is_better(measure, b, a) => Ordering::Greater,
-                (a, b) => b.is_some().cmp(&a.is_some()),
+        let penalties = |one: &Candidate| -> Vec<Option<f64>> {
+            let medians = self.measures.iter().zip(&one.measures);
+            let medians =
+                medians.map(|(measure, spread)| Some(penalty(measure, spread.as_ref()?.median)));
+            let mut all: Vec<Option<f64>> = medians.collect();
+            if let Some(place) = self.margin_at {
+                all.insert(place, one.margin.as_ref().map(|(margin, _)| -margin));
             }
+            all
+        };
+        let orders = penalties(a).into_iter().zip(penalties(b)).map(|pair| match pair {
+            (Some(a), Some(b)) => rounded(a).total_cmp(&rounded(b)),
+            (a, b) => b.is_some().cmp(&a.is_some()),
         });
         orders.fold(Ordering::Equal, Ordering::then)
-    }
-}
-
-/// By the worst margin, the larger one first. A candidate without one comes last.
-fn margins(a: &Candidate, b: &Candidate) -> Ordering {
-    match (&a.margin, &b.margin) {
-        (Some((a, _)), Some((b, _))) => rounded(*b).total_cmp(&rounded(*a)),
-        (a, b) => b.is_some().cmp(&a.is_some()),
     }
 }
 

@@ -22,6 +22,10 @@ fn table(runs: &[Run]) -> Table {
 }
 
 fn ranked(runs: &[Run], by: &[&str], limits: &[ResultLimit]) -> Ranking {
+    ranked_with(runs, by, limits, &["peak_vz"])
+}
+
+fn ranked_with(runs: &[Run], by: &[&str], limits: &[ResultLimit], measures: &[&str]) -> Ranking {
     let table = table(runs).judged(limits);
     Ranking::of(&RankingInput {
         table: &table,
@@ -29,7 +33,7 @@ fn ranked(runs: &[Run], by: &[&str], limits: &[ResultLimit]) -> Ranking {
         by: &by.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>(),
         replicates: &["seed".to_owned()],
         limits,
-        measures: &[ColumnId::PeakVz],
+        measures,
         zipped: &|_| Vec::new(),
     })
     .unwrap()
@@ -84,6 +88,28 @@ fn limits_come_before_measures_and_every_run_of_a_point_must_be_safe() {
         (order(&ranking), ranking.basis),
         (vec!["b".to_owned(), "a".into(), "c".into()], Basis::Measures)
     );
+}
+
+#[test]
+fn a_measure_orders_what_is_safe_and_margins_where_they_are_asked_for() {
+    // Strategy a has the smaller median (13 m/s), b the larger margin to the limit of 20 m/s.
+    let runs = [
+        ("b", 1.0, 1, 14.0, DEPLOYED),
+        ("b", 1.0, 2, 14.0, DEPLOYED),
+        ("a", 1.0, 1, 8.0, DEPLOYED),
+        ("a", 1.0, 2, 18.0, DEPLOYED),
+    ];
+    for (measures, expected) in [
+        (&["peak_vz"][..], ["a", "b"]),
+        (&["peak_vz", "smallest_margin"], ["a", "b"]),
+        (&["smallest_margin", "peak_vz"], ["b", "a"]),
+        (&["smallest_margin"], ["b", "a"]),
+    ] {
+        let ranking = ranked_with(&runs, &["strategy"], &limits(20.0), measures);
+        assert_eq!(order(&ranking), expected, "{measures:?}");
+        let margins = ranking.candidates.iter().map(|one| one.margin.as_ref().unwrap().0);
+        assert!((margins.fold(f64::INFINITY, f64::min) - 0.1).abs() < 1e-12);
+    }
 }
 
 #[test]

@@ -43,8 +43,8 @@ pub struct Args {
         conflicts_with = "rank"
     )]
     base: Option<String>,
-    /// Order the values by limits and measures, the best one first: fewest points not safe, fewest runs not safe, largest
-    /// smallest margin, then the medians of the measures.
+    /// Order the values by limits and measures, the best one first: fewest points not safe, fewest runs not safe, then
+    /// the medians of the measures. Margins order where --measures names `smallest_margin`.
     #[arg(long, conflicts_with_all = ["tie", "runs", "summary"])]
     rank: bool,
     /// Measures, comma-separated [default: `t_90_z_rim_since_release,peak_kinetic_energy` and, in a study

@@ -7,7 +7,7 @@ use super::Args;
 use crate::analysis::compare::{self, measures_with};
 use crate::analysis::ranking::{Basis, DEFAULT_MEASURES, Ranking, RankingInput};
 use crate::cli::Format;
-use crate::job::row::{BetterSide, ColumnId};
+use crate::job::row::{BetterSide, DerivedColumn};
 use crate::platform::error::{Error, Result};
 use crate::platform::nearest::did_you_mean;
 use crate::print::points::chosen_runs;
@@ -29,7 +29,7 @@ pub(super) fn run(
     let (study, replicates) = (&stored.study, stored.study.replicates());
     let rows = rows(table, args.condition.as_deref(), &args.by, &replicates)?;
     let by = parameters(table, &rows, &args.by, &replicates)?;
-    let measures = measures(&args.measures)?;
+    let measures = measures(&args.measures, study)?;
     let input = RankingInput {
         table,
         rows: &rows,
@@ -59,7 +59,7 @@ pub(super) fn run(
             column.is_some_and(|column| compare::values(column, &rows).len() > 1)
         };
         let matched: Vec<String> = ranking.matched.iter().filter(varies).cloned().collect();
-        for note in notes(&ranking, &matched, study, with_runs) {
+        for note in notes(&ranking, &measures.join(", "), &matched, study, with_runs) {
             eprintln!("{note}");
         }
     }
@@ -67,22 +67,24 @@ pub(super) fn run(
 }
 
 /// How the candidates are ordered, over which points, and what is left out.
-fn notes(ranking: &Ranking, matched: &[String], study: &Study, with_runs: bool) -> Vec<String> {
-    let measures = ranking.measures.iter().map(|measure| measure.column.name.as_str());
-    let measures = measures.collect::<Vec<_>>().join(", ");
+fn notes(
+    ranking: &Ranking,
+    measures: &str,
+    matched: &[String],
+    study: &Study,
+    with_runs: bool,
+) -> Vec<String> {
     let limits: Vec<String> = study.result_limits().iter().map(ToString::to_string).collect();
     let runs = |missed: &str| if with_runs { format!(", {missed}") } else { String::new() };
     let order = match ranking.basis {
-        Basis::Limits => format!(
-            "points not safe ({}){}, smallest margin, medians of {measures}",
-            limits.join(", "),
-            runs("runs not safe")
-        ),
+        Basis::Limits => {
+            format!("points not safe ({}){}, {measures}", limits.join(", "), runs("runs not safe"))
+        }
         Basis::Verdicts => format!(
-            "points not deployed{}, medians of {measures} (the study has no limits)",
+            "points not deployed{}, {measures} (the study has no limits)",
             runs("runs not deployed")
         ),
-        Basis::Measures => format!("medians of {measures} alone: no limits and no verdict"),
+        Basis::Measures => format!("{measures} alone: no limits and no verdict"),
     };
     let mut notes = vec![format!("order: {order}")];
     if !matched.is_empty() {
@@ -195,23 +197,23 @@ fn parameters(
     Ok(by)
 }
 
-/// The measures, each with a better side.
-fn measures(given: &[String]) -> Result<Vec<ColumnId>> {
+/// The measures, each with a better side; in a study with limits `smallest_margin` too.
+fn measures(given: &[String], study: &Study) -> Result<Vec<&'static str>> {
     if given.is_empty() {
         return Ok(DEFAULT_MEASURES.to_vec());
     }
+    let mut known =
+        [measures_with(BetterSide::Smaller), measures_with(BetterSide::Larger)].concat();
+    known.extend(study.result_limits().first().map(|_| DerivedColumn::SmallestMargin.name()));
     let mut measures = Vec::new();
     for name in given.iter().map(|name| name.trim()) {
-        let id = ColumnId::from_name(name);
-        let id = id.filter(|id| id.column().better != BetterSide::Neither).ok_or_else(|| {
-            let known =
-                [measures_with(BetterSide::Smaller), measures_with(BetterSide::Larger)].concat();
+        let found = known.iter().find(|known| **known == name).ok_or_else(|| {
             let near = did_you_mean(name, known.iter().copied()).unwrap_or_default();
             let problem = "not a measure of which smaller or larger is better";
             Error::invalid_option("--measures", name, problem, known.join(", "), near)
         })?;
-        if !measures.contains(&id) {
-            measures.push(id);
+        if !measures.contains(found) {
+            measures.push(*found);
         }
     }
     Ok(measures)

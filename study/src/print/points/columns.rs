@@ -44,11 +44,9 @@ pub fn columns(table: &Table, condensed: &Condensed) -> Vec<Column> {
             name if name == DerivedColumn::Safe.name() => {
                 new.extend(proportions(name, "are safe", |runs| runs.safe));
             }
-            name if name == DerivedColumn::SmallestMargin.name() => new.extend([
-                with("", &condensed.least),
-                with("_median", &condensed.table),
-                with(largest, &condensed.largest),
-            ]),
+            name if name == DerivedColumn::SmallestMargin.name() => {
+                new.extend([median.clone(), with(largest, &condensed.largest)]);
+            }
             _ => new.extend([
                 median.clone(),
                 with(least, &condensed.least),

@@ -40,6 +40,8 @@ fn a_point_has_one_number_per_column_for_programs() {
     assert_eq!(cells("peak_vz_least"), [20.0, 10.0].map(Value::Number));
     assert_eq!(cells("peak_vz_largest"), [30.0, 15.0].map(Value::Number));
     assert_eq!(cells("smallest_margin"), [-0.2, 0.4].map(Value::Number), "the least is safe");
+    let medians = points.condensed.table.column("smallest_margin").unwrap();
+    assert_eq!(medians.cells, cells("smallest_margin"), "one meaning everywhere");
     assert_eq!(cells("smallest_margin_of")[0], Value::Text("verdict".to_owned()));
     assert_eq!(cells("verdict_depends_on"), [Value::Text("seed".to_owned()), Value::Null]);
     assert_eq!(cells("film.thickness"), [Value::Number(2e-5), Value::Number(2e-5)]);
