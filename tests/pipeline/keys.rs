@@ -55,12 +55,12 @@ fn keys_are_found_by_name_and_by_meaning() {
 #[test]
 fn help_shows_options_of_the_command_before_global_ones_and_lists_the_exit_codes() {
     let help = stdout(&["table", "--help"]);
-    let positions = ["--columns", "Global options", "--results", "--format", "--quiet"]
+    let positions = ["--columns", "Shared options", "--results", "--format", "--quiet"]
         .map(|text| help.find(text).unwrap_or_else(|| panic!("{text}: {help}")));
     assert!(positions.is_sorted(), "{help}");
     let help = stdout(&["--help"]);
     assert!(help.contains("Exit codes:") && help.contains("130: Ctrl-C"), "{help}");
-    assert!(!help.contains("Global options"), "{help}");
+    assert!(!help.contains("Shared options"), "{help}");
     for command in Cli::command().get_subcommands() {
         let line = format!("\n  {} ", command.get_name());
         assert!(help.contains(&line), "{} is in no group: {help}", command.get_name());

@@ -12,7 +12,7 @@ use crate::run::progress::Loudness;
 use crate::store::table::Table;
 
 /// Heading of the shared options in `--help`.
-pub const HEADING: &str = "Global options";
+pub const HEADING: &str = "Shared options";
 
 /// Where the results are.
 #[derive(Debug, Clone, Default, clap::Args)]
