@@ -39,7 +39,7 @@ fn every_kind_is_drawn_as_svg_and_png() {
             "infeasible (8)",
         ),
         (
-            "--measure peak_vz --over mass_flow_rate --by N --where alpha1_over_phi==9",
+            "--measure peak_vz --over gas.mass_flow_rate --by design.N --where alpha1_over_phi==9",
             "peak_vz-over-mass_flow_rate-by-N",
             "End time 20 ms",
         ),

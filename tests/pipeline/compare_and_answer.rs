@@ -13,6 +13,8 @@ fn compare_pairs_rows_that_differ_in_one_parameter_only() {
     let rows = folder.rows("results/grid");
     let by = ["compare", "--by", "mass_flow_rate", "--base", "1 g/s"];
     let pairs = json_of(&folder, &by);
+    let path = ["compare", "--by", "gas.mass_flow_rate", "--base", "1 g/s"];
+    assert_eq!(json_of(&folder, &path), pairs, "a parameter by the path of its key");
     let pairs = pairs.as_array().unwrap();
     assert_eq!(pairs.len(), 8);
     for pair in pairs {

@@ -1,6 +1,7 @@
 //! Options that several commands share. A command includes only those that apply to it, below its own
 //! options in `--help`.
 
+use std::convert::Infallible;
 use std::num::NonZero;
 use std::path::PathBuf;
 
@@ -13,6 +14,11 @@ use crate::store::table::Table;
 
 /// Heading of the shared options in `--help`.
 pub const HEADING: &str = "Shared options";
+
+/// A parameter on the command line, by the dotted path of its key or its last part: the name of its column.
+pub fn parameter_name(text: &str) -> std::result::Result<String, Infallible> {
+    Ok(keys::shortened(text.trim()).to_owned())
+}
 
 /// Where the results are.
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -102,7 +108,7 @@ impl UnitsOption {
                 text.split_once('=').ok_or_else(|| refuse("has no `=`".to_owned()))?;
             let name = name.trim();
             let key = keys::find(name);
-            let name = key.map_or(name, |index| keys::short_name(index));
+            let name = keys::shortened(name);
             let of_key = || key.map(|index| KEYS[index].unit().to_owned());
             let si = si(name).or_else(of_key);
             let si = si.ok_or_else(|| refuse("names no parameter and no column".to_owned()))?;

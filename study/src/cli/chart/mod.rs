@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
+use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption, parameter_name};
 use super::picture::{self, Picture, refused};
 use super::results::{self, StudyArgs};
 use super::{Format, output_error};
@@ -52,14 +52,32 @@ pub struct Args {
     /// Draw the measure, or the borders, over this parameter. Every other parameter that varies gives
     /// lines or panels; nothing is averaged but the runs of a point, of which the chart shows median and
     /// range.
-    #[arg(long, value_name = "PARAMETER", requires = "with_over", conflicts_with = "map")]
+    #[arg(
+        long,
+        value_name = "PARAMETER",
+        requires = "with_over",
+        conflicts_with = "map",
+        value_parser = parameter_name
+    )]
     over: Option<String>,
     /// Draw one line per combination of these parameters, one or two, comma-separated; the others that vary give
     /// panels [default: as many lines as are legible].
-    #[arg(long, value_name = "PARAMETERS", value_delimiter = ',', requires = "over")]
+    #[arg(
+        long,
+        value_name = "PARAMETERS",
+        value_delimiter = ',',
+        requires = "over",
+        value_parser = parameter_name
+    )]
     by: Vec<String>,
     /// Draw the measure as a map over two parameters.
-    #[arg(long, value_name = "X,Y", value_delimiter = ',', requires = "with_map")]
+    #[arg(
+        long,
+        value_name = "X,Y",
+        value_delimiter = ',',
+        requires = "with_map",
+        value_parser = parameter_name
+    )]
     map: Vec<String>,
     /// Draw each run; replicates are parameters as any other [default: median and range of the runs of a
     /// point].
@@ -107,9 +125,10 @@ impl Args {
 
     /// The one chart that the options ask for.
     fn kind(&self, source: &Source<'_>) -> Result<ChartKind> {
-        let by = trimmed(&self.by);
+        let by = self.by.clone();
         if !self.history.is_empty() {
-            return Ok(ChartKind::History(trimmed(&self.history)));
+            let names = self.history.iter().map(|name| name.trim().to_owned());
+            return Ok(ChartKind::History(names.collect()));
         }
         let Some(measure) = self.measure.as_ref().map(|name| name.trim().to_owned()) else {
             return Ok(ChartKind::Borders(self.over.clone(), by));
@@ -117,7 +136,7 @@ impl Args {
         if let Some(over) = &self.over {
             return Ok(ChartKind::Over(measure, over.clone(), by));
         }
-        let axes = match trimmed(&self.map) {
+        let axes = match self.map.clone() {
             none if none.is_empty() => None,
             axes => Some(<[String; 2]>::try_from(axes).map_err(|axes| {
                 refused("--map", &axes.join(","), "not two parameters", "--map X,Y")
@@ -132,13 +151,9 @@ impl Args {
         if self.runs || !self.jobs.is_empty() {
             return Vec::new();
         }
-        let named = trimmed(&[&self.by[..], &self.map, self.over.as_slice()].concat());
+        let named = [&self.by[..], &self.map, self.over.as_slice()].concat();
         study.replicates().into_iter().filter(|name| !named.contains(name)).collect()
     }
-}
-
-fn trimmed(names: &[String]) -> Vec<String> {
-    names.iter().map(|name| name.trim().to_owned()).collect()
 }
 
 /// Runs `billow chart`: prints the paths of the pictures.

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
+use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption, parameter_name};
 use super::results::{self, Opened, StudyArgs};
 use super::{Format, output_error};
 use crate::analysis::compare::{self, Comparison, Measure, Sets, Tolerance, measures_with};
@@ -32,7 +32,13 @@ pub struct Args {
     study: StudyArgs,
     /// The parameter to compare by; with --rank one or more, comma-separated [default there: strategy if it varies,
     /// otherwise every parameter].
-    #[arg(long, value_name = "PARAM", value_delimiter = ',', required_unless_present = "rank")]
+    #[arg(
+        long,
+        value_name = "PARAM",
+        value_delimiter = ',',
+        required_unless_present = "rank",
+        value_parser = parameter_name
+    )]
     by: Vec<String>,
     /// The value that the other values are compared with; with its unit, as in "1 g/s".
     #[arg(

@@ -142,8 +142,8 @@ fn rows(
     by: &[String],
     replicates: &[String],
 ) -> Result<Vec<usize>> {
-    let ranked = |name: &String| by.iter().any(|by| by.trim() == name);
-    let replicates: Vec<String> = replicates.iter().filter(|name| !ranked(name)).cloned().collect();
+    let replicates: Vec<String> =
+        replicates.iter().filter(|name| !by.contains(name)).cloned().collect();
     let rows = chosen_runs(table, condition, &replicates)?;
     match condition.filter(|_| rows.is_empty()) {
         Some(condition) => {
@@ -174,7 +174,7 @@ fn parameters(
         return Ok(points.map(|name| (*name).to_owned()).collect());
     }
     let mut by: Vec<String> = Vec::new();
-    for name in given.iter().map(|name| name.trim()) {
+    for name in given.iter().map(String::as_str) {
         if !names.contains(&name) {
             let near = did_you_mean(name, names.iter().copied());
             let allowed = match names.as_slice() {

@@ -27,7 +27,7 @@ pub use study::{KEYS, SECTIONS};
 pub use study_objects::{
     CAPSULE_SUPPORT_KEYS, RANGE_KEYS, SEARCH_KEYS, STRATEGY_KEYS, WINDOW_KEYS,
 };
-pub use table::{SCENE, STUDY, Table, find, index, short_name};
+pub use table::{SCENE, STUDY, Table, find, index, short_name, shortened};
 pub(crate) use words::{
     CAPS, CHIRALITIES, FITS, INTEGRATORS, ISOTHERMAL, MODEL_KINDS, Named, PROFILES, RESIDUAL_GAS,
     SHAPES, SPECIES, SUPPORT_PLACES, pick,

@@ -114,6 +114,11 @@ pub fn find(name: &str) -> Option<usize> {
     STUDY.find(name)
 }
 
+/// The short name of a key that is named by its dotted path or its last part; another name as it is.
+pub fn shortened(name: &str) -> &str {
+    find(name).map_or(name, |index| short_name(index))
+}
+
 /// The shortest name by which [`find`] finds the key.
 pub fn short_name(index: usize) -> &'static str {
     STUDY.short_name(index)

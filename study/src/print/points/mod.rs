@@ -42,10 +42,9 @@ pub fn chosen_runs(
     replicates: &[String],
 ) -> Result<Vec<usize>> {
     let names = condition.map(expression::names).unwrap_or_default();
-    let parameter = |name: &str| {
-        keys::find(name).map_or(name.to_owned(), |key| keys::short_name(key).to_owned())
-    };
-    if replicates.is_empty() || names.iter().any(|name| replicates.contains(&parameter(name))) {
+    let is_replicate =
+        |name: &String| replicates.iter().any(|known| known == keys::shortened(name));
+    if replicates.is_empty() || names.iter().any(is_replicate) {
         return filtered(table, condition);
     }
     let all: Vec<usize> = (0..table.rows()).collect();
