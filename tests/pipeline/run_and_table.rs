@@ -98,6 +98,16 @@ fn table_selects_sorts_and_filters() {
         let header = table.lines().next().unwrap();
         assert!(header.starts_with("job ") && header.contains("  status "), "{header}");
     }
+    // A person sees to which point a row belongs, a program the columns that it asked for.
+    let header = |more: &[&str]| {
+        let table = folder.stdout(&[&["table"], more].concat());
+        table.lines().next().unwrap().split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let of_six = ["--where", "N == 6", "--columns"];
+    let varying = "M alpha1_over_phi residual_gas_mass status";
+    assert_eq!(header(&[&of_six[..], &["status"]].concat()), varying);
+    assert_eq!(header(&[&of_six[..], &["design.M,status"]].concat()), "design.M status");
+    assert_eq!(csv(&["--columns", "status"]).lines().next(), Some("status"));
     let all = folder.stdout(&["table", "results/grid", "--columns", "all", "--format", "csv"]);
     assert_eq!(all, csv(&[]));
     // The first rows alone are built, and are those of the whole table.

@@ -1,7 +1,9 @@
 //! The columns of a table: those asked for, or those that fit on a line.
 
 use super::{Args, MAX_LINE_WIDTH, MAX_WIDE_LINE_WIDTH, sorting};
+use crate::analysis::compare::values;
 use crate::cli::Format;
+use crate::input::keys;
 use crate::job::row::{ColumnId, DerivedColumn};
 use crate::platform::error::{Error, Result};
 use crate::print::points::{DEPLOYED, RUNS};
@@ -25,23 +27,32 @@ const MAIN_MEASURES: [ColumnId; 8] = [
     ColumnId::Overshoot,
 ];
 
-/// The columns to print of the rows that are listed, which are runs or points of several.
+/// The columns to print of the rows that are listed, which are runs or points of several. A person sees to which point a
+/// row belongs: the parameters that vary come first, unless a parameter is named.
 ///
 /// # Errors
 /// An unknown column, or one of single runs.
 pub fn chosen<'a>(
     listed: &'a Table,
     runs: &Table,
-    args: &Args,
-    format: Format,
+    (args, format): (&Args, Format),
+    rows: &[usize],
 ) -> Result<Vec<&'a Column>> {
-    match args.columns.as_slice() {
-        [] if format == Format::Table => Ok(main_columns(listed, &args.sort)),
-        [name] if name != "all" => Ok(vec![find(listed, runs, "--columns", name.trim())?]),
-        [] | [_] if format == Format::Table => Ok(all(listed)),
-        [] | [_] => Ok(in_order(listed)),
-        names => names.iter().map(|name| find(listed, runs, "--columns", name.trim())).collect(),
+    let names = match args.columns.as_slice() {
+        [] if format == Format::Table => return Ok(main_columns(listed, &args.sort)),
+        names if !names.is_empty() && names != ["all"] => names.iter().map(|name| name.trim()),
+        _ if format == Format::Table => return Ok(all(listed)),
+        _ => return Ok(in_order(listed)),
+    };
+    let named = names.clone().map(|name| find(listed, runs, "--columns", name));
+    let named = named.collect::<Result<Vec<_>>>()?;
+    let is_parameter =
+        |name: &str| listed.parameters().any(|known| known.name == keys::shortened(name));
+    if format != Format::Table || names.clone().any(is_parameter) {
+        return Ok(named);
     }
+    let varies = |column: &&Column| values(column, rows).len() > 1;
+    Ok(listed.parameters().filter(varies).chain(named).collect())
 }
 
 /// The column with that name of the rows that are listed, for which `option` asks.

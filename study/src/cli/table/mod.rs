@@ -39,8 +39,8 @@ pub struct Args {
     /// replicates a condition on results is one on points; one that names a replicate chooses runs.
     #[arg(long = "where", value_name = "CONDITION")]
     pub condition: Option<String>,
-    /// Columns, comma-separated, or "all" [default: parameters and main measures; all for csv
-    /// and json].
+    /// Columns, comma-separated, or "all" [default: parameters and main measures; all for csv and json]. A table has the
+    /// parameters that vary before them, unless one of them is a parameter; csv and json have these columns alone.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub columns: Vec<String>,
     /// Sort by these columns, comma-separated; NAME:desc sorts from the largest down. Empty cells
@@ -104,8 +104,8 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         }
         None => sorted(&table, rows.clone(), &args.sort)?,
     };
-    let columns = columns::chosen(listed, &table, args, format)?;
     let printed = &order[..args.limit.unwrap_or(order.len()).min(order.len())];
+    let columns = columns::chosen(listed, &table, (args, format), printed)?;
     print_table(listed, &columns, printed, format, out)?;
     if args.quiet.quiet {
         return Ok(());
