@@ -60,6 +60,32 @@ fn a_run_with_another_set_says_what_changed_and_keeps_every_job() {
 }
 
 #[test]
+fn a_study_or_a_folder_with_another_name_is_found_beside() {
+    let folder = ran();
+    let rename = |from: &str, to: &str| {
+        fs::rename(folder.path().join(from), folder.path().join(to)).unwrap();
+    };
+    rename("grid.json", "new.json");
+    let key = "note: results/grid holds jobs of this study, results/new holds none: to use them, give \"name\": \
+               \"grid\" in the study file\n";
+    for command in ["plan", "table", "status"] {
+        let said = stderr(&folder.run(&[command, "new.json"]));
+        assert!(said.contains(key), "{command}: {said}");
+    }
+    let refused = "if it is this study under an earlier name, give \"name\": \"grid\"";
+    folder.refuses(&["run", "new.json", "--results", "results/grid"], refused);
+    let said = stderr(&folder.run(&["plan", "new.json", "--set", "name=grid"]));
+    assert!(said.contains("16 of 16 jobs finished") && !said.contains("holds none"), "{said}");
+    rename("new.json", "grid.json");
+    rename("results/grid", "results/old");
+    let option = "holds none: to use them, give --results results/old\n";
+    let ran_again = folder.run(&["run", "grid.json", "--points", "1/16"]);
+    assert!(stderr(&ran_again).contains(option), "{}", stderr(&ran_again));
+    let said = stderr(&folder.run(&["plan", "grid.json"]));
+    assert!(!said.contains("holds none"), "it holds jobs now: {said}");
+}
+
+#[test]
 fn a_study_of_infeasible_points_says_so() {
     let study = grid(&json!({
         "N": [5, 6], "M": [2], "alpha1_over_phi": [0.1], "mass_flow_rate": ["2 g/s"]

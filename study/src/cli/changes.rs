@@ -1,8 +1,9 @@
-//! What has changed since results were computed: the study, or the physics.
+//! What has changed since results were computed: the study, its name, or the physics.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use crate::job::JobId;
 use crate::platform::error::Result;
 use crate::platform::provenance::PHYSICS_VERSION;
 use crate::scene::summary;
@@ -98,6 +99,37 @@ pub fn note_before_run(results: &Results<'_>, study: &Study) -> Result<()> {
         );
     }
     Ok(())
+}
+
+/// Says on stderr which folder beside that of a study holds its jobs, where its folder holds none: the study or the folder
+/// has another name. A job is found by the name of its history, which is not read.
+pub fn note_elsewhere(results: &Results<'_>, study: &Study) {
+    if let Some(note) = elsewhere(results, study) {
+        eprintln!("note: {note}");
+    }
+}
+
+fn elsewhere(results: &Results<'_>, study: &Study) -> Option<String> {
+    /// Jobs that are looked for, at most. Chosen: enough to recognise a study.
+    const MAX_JOBS: usize = 16;
+    let points = study.points().iter().filter(|point| point.infeasible.is_none());
+    let jobs: Vec<&JobId> = points.take(MAX_JOBS).map(|point| &point.job.id).collect();
+    let held = |folder: &Results<'_>| jobs.iter().filter(|id| folder.job_path(id).exists()).count();
+    if held(results) > 0 {
+        return None;
+    }
+    let beside = results.files().list(results.root().parent()?).ok()?;
+    let mut beside = beside.iter().map(|path| Results::new(results.files(), path));
+    let other = beside.find(|other| 2 * held(other) > jobs.len())?;
+    let (root, owner) = (other.root(), other.owner().ok()??);
+    let uses = [
+        (owner != study.name).then(|| format!("\"name\": {owner:?} in the study file")),
+        (root != Path::new("results").join(&owner))
+            .then(|| format!("--results {}", root.display())),
+    ];
+    let uses = uses.into_iter().flatten().collect::<Vec<_>>().join(" and ");
+    let (root, empty) = (root.display(), results.root().display());
+    Some(format!("{root} holds jobs of this study, {empty} holds none: to use them, give {uses}"))
 }
 
 /// What to know about finished jobs of other versions of the physics, by version; `None` without any.

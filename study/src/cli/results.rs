@@ -149,6 +149,9 @@ fn locate(given: &StudyArgs, set: &[String]) -> Result<(PathBuf, Option<Study>)>
         (None, Some(study)) => results_folder(&given.results, study),
         (None, None) => folder_of(given.study.as_deref())?,
     };
+    if let Some(study) = &study {
+        changes::note_elsewhere(&Results::new(&Disk, &root), study);
+    }
     Ok((root, study))
 }
 

@@ -82,6 +82,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         notes::print_warnings(&study);
         let results = Results::new(&Disk, &root);
         changes::note_before_run(&results, &study)?;
+        changes::note_elsewhere(&results, &study);
         let points = plan::next_jobs(&study, &[]).map(|plan| plan.points).unwrap_or_default();
         let versions = other_physics(&points, &results.journal()?.records);
         if let Some(note) = changes::other_physics(&versions) {

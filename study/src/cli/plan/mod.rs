@@ -137,6 +137,7 @@ fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generati
         eprintln!("{}: {note}", root.display());
     }
     let memory = Memory::new(None);
+    changes::note_elsewhere(&results, study);
     memory.note(study).into_iter().for_each(|note| eprintln!("{note}"));
     // What does not fit is not built either.
     let fits = |point: &&Point| memory.fits(&point.job.scene);

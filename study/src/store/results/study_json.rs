@@ -145,7 +145,8 @@ impl Results<'_> {
         };
         if let Some(owner) = owner.filter(|owner| owner != name) {
             return Err(self.refused(&format!(
-                "the folder holds results of the study {owner:?}, not of {name:?}"
+                "the folder holds results of the study {owner:?}, not of {name:?}; if it is this study under an \
+                 earlier name, give \"name\": {owner:?} in the study file"
             )));
         }
         let text = study_text(name, study).map_err(|error| disk_error(&path, &error))?;
