@@ -115,6 +115,10 @@ fn a_search_encloses_the_rate_at_which_a_limit_is_missed() {
         assert!(0.0 < high - low && high - low <= 0.0002, "{border}");
         assert_eq!((&border["below"], &border["limit"]), (&json!("met"), &json!("peak_vz")));
         for row in rows.iter().filter(|row| row["strategy"] == border["strategy"]) {
+    let film =
+        ["plan", "grid.json", "--set", "solver.model=film", "--set", "design.subdivisions=2"];
+    let alone = "warning: one run decides each value of mass_flow_rate";
+    assert!(stderr(&folder.run(&film)).contains(alone) && !planned.contains(alone), "{planned}");
             let (rate, speed) =
                 (row["mass_flow_rate"].as_f64().unwrap(), row["peak_vz"].as_f64().unwrap());
             assert!(rate > low || speed < 41.0, "{row}");

@@ -79,6 +79,7 @@ fn of_points(study: &Study) -> Vec<String> {
                 .to_owned(),
         );
     }
+    lines.extend(single_runs(study));
     lines.extend(bending::need(study));
     lines.extend(bending::yielding_creases(study));
     if film(|film| film.compression < 1.0 && film.bending) {
@@ -89,6 +90,17 @@ fn of_points(study: &Study) -> Vec<String> {
         );
     }
     lines
+}
+
+/// A warning of a search of film of which one run decides each value.
+fn single_runs(study: &Study) -> Option<String> {
+    let (parameter, _) = study.searched().filter(|_| study.replicate_count() == 1)?;
+    seed_matters(Some(study)).then(|| {
+        format!(
+            "warning: one run decides each value of {parameter}, and another seed may move the border; \
+             \"replicates\": {{\"seed\": 5}} repeats each value"
+        )
+    })
 }
 
 /// The errors of values from several meshes, or why there are none.

@@ -149,7 +149,7 @@ impl Grid {
         };
         let path = format!("grid.{}.bisect", self.columns[search.column].name);
         let problem = format!(
-            "{count} replicates can never exclude one half: their Wilson interval is too wide"
+            "{count} replicates are too few to decide a value, as all can end alike by chance: give at least 4"
         );
         Err(source
             .error(&path, "", problem, "no replicates, or 4 and more")
