@@ -88,6 +88,22 @@ fn the_answer_counts_points_and_names_the_gentler_strategy() {
 }
 
 #[test]
+fn runs_that_end_too_early_are_named_beside_what_a_search_found() {
+    let bisect = json!({"bisect": ["2 g/s", "20 g/s"], "on": "verdict", "tolerance": "50 %"});
+    let mut study = safety_study(&bisect);
+    study["solver"]["end_time"] = json!("0.05 s");
+    study.as_object_mut().unwrap().remove("replicates");
+    let folder = TestFolder::new(&study);
+    let early = "did not deploy and still moved at the end: a longer solver.end_time may change";
+    let said = folder.stdout(&["run", "grid.json", "-q"]).replace("\n           ", " ");
+    assert!(said.contains(early), "{said}");
+    let borders = folder.run(&["table", "grid.json", "--borders"]);
+    assert!(stderr(&borders).contains(early), "{}", stderr(&borders));
+    let long = folder.stdout(&["run", "grid.json", "-q", "--set", "solver.end_time=2 s"]);
+    assert!(!long.contains("still moved"), "{long}");
+}
+
+#[test]
 fn a_search_encloses_the_rate_at_which_a_limit_is_missed() {
     let bisect = json!({"bisect": ["0.5 g/s", "20 g/s"], "on": "peak_vz", "tolerance": "1 %"});
     let mut study = safety_study(&bisect);
@@ -99,6 +115,10 @@ fn a_search_encloses_the_rate_at_which_a_limit_is_missed() {
         "{planned}"
     );
     assert!(planned.contains("limits: safe is peak_vz < 41 m/s and deployed"), "{planned}");
+    let film =
+        ["plan", "grid.json", "--set", "solver.model=film", "--set", "design.subdivisions=2"];
+    let alone = "warning: one run decides each value of mass_flow_rate";
+    assert!(stderr(&folder.run(&film)).contains(alone) && !planned.contains(alone), "{planned}");
     let said = folder.stdout(&["run", "grid.json", "-q"]);
     let rows = folder.rows("results/grid");
     assert!(rows.len() > 10, "the search goes on after its first values");
@@ -115,10 +135,6 @@ fn a_search_encloses_the_rate_at_which_a_limit_is_missed() {
         assert!(0.0 < high - low && high - low <= 0.0002, "{border}");
         assert_eq!((&border["below"], &border["limit"]), (&json!("met"), &json!("peak_vz")));
         for row in rows.iter().filter(|row| row["strategy"] == border["strategy"]) {
-    let film =
-        ["plan", "grid.json", "--set", "solver.model=film", "--set", "design.subdivisions=2"];
-    let alone = "warning: one run decides each value of mass_flow_rate";
-    assert!(stderr(&folder.run(&film)).contains(alone) && !planned.contains(alone), "{planned}");
             let (rate, speed) =
                 (row["mass_flow_rate"].as_f64().unwrap(), row["peak_vz"].as_f64().unwrap());
             assert!(rate > low || speed < 41.0, "{row}");

@@ -34,6 +34,10 @@ pub use trust::Trust;
 /// Most values of a parameter that the answer compares. Chosen: more are a chart, or `billow compare --rank`.
 const MAX_COMPARED_VALUES: usize = 64;
 
+/// Change of the volume from its mean over the last tenth of a run to its last value, relative, above which the capsule
+/// still moved. Chosen: half of what `billow job` allows over that tenth.
+const MIN_CHANGE_AT_END: f64 = 0.01;
+
 /// The answer of a study.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Answer {
@@ -56,6 +60,8 @@ pub struct Answer {
     pub comparisons: Vec<(String, Result<Ranking, String>)>,
     /// Numbers of points, in a study with replicates.
     pub points: Option<PointCounts>,
+    /// Number of runs that did not deploy and still moved at their end.
+    pub still_moving: usize,
     /// Points whose verdict depends on a numerical choice.
     pub sensitivity: Option<VerdictSensitivity>,
     /// Safe points, in a study with limits.
@@ -113,6 +119,7 @@ impl Answer {
         let mut answer = Self::default();
         let all: Vec<usize> = (0..table.rows()).collect();
         let rows = table.one_row_per_job(&all);
+        answer.still_moving = rows.iter().filter(|row| still_moves(table, **row)).count();
         for row in &rows {
             let near = table.value(ColumnId::NearThreshold, *row) == Some(&Value::Bool(true));
             if let Some(status) = table.status(*row) {
@@ -186,6 +193,19 @@ fn comparison(
         return Err(format!("points that differ in {by} alone are one job"));
     }
     Ok(ranking)
+}
+
+/// Whether a run did not deploy and its volume still changed at its end, by the last volume and the mean of the last
+/// tenth. A longer run may end otherwise.
+pub fn still_moves(table: &Table, row: usize) -> bool {
+    let number = |column| match table.value(column, row) {
+        Some(Value::Number(number)) => *number,
+        _ => f64::NAN,
+    };
+    let mean = number(ColumnId::VolumeRatio) * number(ColumnId::ReferenceVolume);
+    let change = (number(ColumnId::FinalVolume) / mean - 1.0).abs();
+    table.verdict(row).is_some_and(|verdict| verdict != Verdict::Deployed)
+        && change > MIN_CHANGE_AT_END
 }
 
 /// The parameters of a row, and the units in which they are shown.

@@ -3,10 +3,11 @@
 use std::io::Write;
 
 use super::Args;
-use crate::analysis::answer::Searches;
+use crate::analysis::answer::{Searches, still_moves};
 use crate::cli::Format;
 use crate::cli::results::{self, Opened};
 use crate::platform::error::{Error, Result};
+use crate::print::answer::moving;
 use crate::print::{count, print_table};
 use crate::store::table::Column;
 use crate::store::table::select::filtered;
@@ -43,6 +44,11 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             "{}: {}; low, high: nearest values at which the outcome is decided",
             searches.parameter, searches.criterion
         );
+        let jobs = table.one_row_per_job(&(0..table.rows()).collect::<Vec<_>>());
+        let still_moving = jobs.iter().filter(|row| still_moves(&table, **row)).count();
+        if let Some(note) = moving(still_moving) {
+            eprintln!("note: {note}");
+        }
         let wide = searches.found.iter();
         let wide = wide.filter(|found| found.undecided_inside(searches.replicates) > 0).count();
         if wide > 0 {

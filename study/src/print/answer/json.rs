@@ -20,6 +20,7 @@ pub fn json(answer: &Answer) -> Value {
         "question": answer.question,
         "jobs": answer.counts.jobs(),
         "near_threshold": answer.counts.near_threshold,
+        "still_moving": answer.still_moving,
         "fastest": answer.fastest,
         "hardest": answer.hardest,
         "most_energy": answer.most_energy,

@@ -42,6 +42,7 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
         None => deployed(answer),
     };
     print_topic("deployed", &[deployed], out)?;
+    print_topic("moving", moving(answer.still_moving).as_slice(), out)?;
     let sensitivity = answer.sensitivity.iter().map(safe::sensitivity);
     print_topic("depends", &sensitivity.collect::<Vec<_>>(), out)?;
     print_topic("safe", &answer.safety.iter().map(safe::safe).collect::<Vec<_>>(), out)?;
@@ -139,6 +140,17 @@ pub fn shell_word(value: &Value) -> String {
     };
     let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_' | '+');
     if !text.is_empty() && text.chars().all(plain) { text } else { format!("{text:?}") }
+}
+
+/// What to do about runs that ended too early.
+pub fn moving(runs: usize) -> Option<String> {
+    (runs > 0).then(|| {
+        format!(
+            "{} did not deploy and still moved at the end: a longer solver.end_time may change the verdict and \
+             what a search finds",
+            count(runs, "run")
+        )
+    })
 }
 
 fn deployed(answer: &Answer) -> String {
