@@ -116,6 +116,21 @@ fn damage(folder: &TestFolder, file: &str, change: &Change) {
     fs::write(&path, bytes).unwrap();
 }
 
+#[test]
+fn what_a_killed_run_leaves_is_no_damage() {
+    let folder = ran();
+    damage(&folder, TABLE, &Foreign);
+    fs::write(folder.results().join("attempts.jsonl"), "").unwrap();
+    let said = folder.stdout(&["doctor"]);
+    assert!(said.starts_with("note ") && said.contains("older than the journal"), "{said}");
+    damage(&folder, JOURNAL, &Torn);
+    let status = folder.stdout(&["status"]);
+    let next = "nothing else is lost, `billow run` runs it again\n";
+    assert!(status.contains(next) && !status.contains("doctor"), "{status}");
+    folder.stdout(&["run", "grid.json", "-q"]);
+    assert_eq!(json_of(&folder, &["doctor"]), json!([]));
+}
+
 /// `doctor` reports each damage with the next step, and the next run repairs what it can.
 #[test]
 fn doctor_finds_every_damage_and_run_repairs_it() {

@@ -262,6 +262,9 @@ impl<'a> Status<'a> {
             0 => String::new(),
             more => format!(", and {more} more"),
         };
+        if self.faults.iter().all(|fault| fault.torn) {
+            return format!("{first}{more}; nothing else is lost, `billow run` runs it again");
+        }
         format!("{first}{more}; next: billow doctor {}", self.stored.results.root().display())
     }
 }

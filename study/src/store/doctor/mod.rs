@@ -259,6 +259,10 @@ fn check_table(stored: &Stored<'_>, health: &mut Health) {
             let next = "nothing; the running command writes it from time to time";
             health.note(&path, OTHER_TABLE, next);
         }
+        Ok(Some(false)) if stored.results.attempts_path().exists() => {
+            let problem = "older than the journal: the last run died before it wrote the table";
+            health.note(&path, problem, "nothing; the next `billow run` of its study writes it");
+        }
         Ok(Some(false)) => health.fault(&path, OTHER_TABLE, REPAIR),
     }
 }
