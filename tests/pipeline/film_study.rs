@@ -85,8 +85,9 @@ fn a_plan_says_whether_bending_changes_results_and_whether_creases_would_yield()
 #[test]
 fn a_film_study_gives_sound_rows_and_the_same_bits_on_any_threads() {
     let folder = TestFolder::new(&study());
-    let planned = stderr(&folder.run(&["plan", "grid.json"]));
+    let planned = stderr(&folder.run(&["plan", "grid.json", "--threads", "4"]));
     assert!(planned.contains("forecast: 4 jobs of film, "), "{planned}");
+    assert!(planned.contains(" s of core time, 1 s on 4 threads\n"), "{planned}");
     assert!(planned.contains("contact distance "), "{planned}");
     let output = folder.run(&["run", "grid.json", "--threads", "1", "--results", "one"]);
     assert!(output.status.success(), "{}", stderr(&output));

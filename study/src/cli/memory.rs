@@ -18,7 +18,8 @@ const MAX_NAMES: usize = 3;
 /// The memory of this process for jobs on a number of threads.
 pub struct Memory {
     limit: Option<Limit>,
-    threads: usize,
+    /// Number of threads.
+    pub threads: usize,
 }
 
 impl Memory {

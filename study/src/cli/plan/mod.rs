@@ -13,7 +13,9 @@ use forecast::forecast;
 
 use super::changes;
 use super::memory::Memory;
-use super::options::{OutputOptions, QuietOption, ResultsOption, SetOption, UnitsOption};
+use super::options::{
+    OutputOptions, QuietOption, ResultsOption, SetOption, ThreadsOption, UnitsOption,
+};
 use super::results::results_folder;
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
@@ -37,6 +39,8 @@ pub struct Args {
     pub study: PathBuf,
     #[command(flatten)]
     results: ResultsOption,
+    #[command(flatten)]
+    threads: ThreadsOption,
     #[command(flatten)]
     units: UnitsOption,
     #[command(flatten)]
@@ -133,11 +137,11 @@ fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generati
         let jobs = print::count(finished.len() + missing.len(), "job");
         eprintln!("{}: {} of {jobs} finished already", root.display(), finished.len());
     }
+    changes::note_elsewhere(&results, study);
     if let Some(note) = changes::other_physics(&other_physics(&generation.points, &records)) {
         eprintln!("{}: {note}", root.display());
     }
-    let memory = Memory::new(None);
-    changes::note_elsewhere(&results, study);
+    let memory = Memory::new(args.threads.count()?);
     memory.note(study).into_iter().for_each(|note| eprintln!("{note}"));
     // What does not fit is not built either.
     let fits = |point: &&Point| memory.fits(&point.job.scene);
@@ -146,7 +150,7 @@ fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generati
     if let Some(text) = lengths::in_use(&fitting) {
         eprintln!("{text}");
     }
-    let cost = forecast(&missing, study.searched().is_some());
+    let cost = forecast(&missing, study.searched().is_some(), memory.threads);
     cost.into_iter().chain(memory.forecast(study)).for_each(|text| eprintln!("{text}"));
     Ok(())
 }

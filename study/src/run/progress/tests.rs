@@ -105,6 +105,7 @@ fn the_remaining_time_is_that_of_the_threads_of_the_run() {
         (0..jobs_done).for_each(|_| work.add(&finished(0)));
         assert_eq!(work.remaining_time(), None, "no time has passed yet");
         work.start = Some((Instant::now().checked_sub(Duration::from_secs(40)).unwrap(), 0));
+        assert_eq!(work.summary().contains("of core time"), threads > 1 && jobs_done < 9);
         let remaining = work.remaining_time().unwrap().as_secs();
         assert!(remaining.abs_diff(seconds) <= 1, "{threads} {jobs_done}: {remaining} s");
     }

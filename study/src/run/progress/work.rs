@@ -82,7 +82,15 @@ impl Work {
     pub fn summary(&self) -> String {
         let Self { jobs, finished, failed, .. } = self;
         let remaining = match self.remaining_time() {
-            Some(remaining) => format!(", about {} remaining", duration_text(remaining)),
+            Some(remaining) => {
+                let threads = u32::try_from(self.threads.min(jobs - finished)).unwrap_or(u32::MAX);
+                let core = duration_text(remaining.saturating_mul(threads));
+                let core = match threads {
+                    1 => String::new(),
+                    threads => format!(" ({core} of core time on {threads} threads)"),
+                };
+                format!(", about {} remaining{core}", duration_text(remaining))
+            }
             None => String::new(),
         };
         format!("{finished} of {jobs} jobs finished, {failed} failed{remaining}")
