@@ -6,9 +6,12 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use billow_solver::platform::seal;
 use serde_json::{Value, json};
 
-use crate::support::{TestFolder, histories, ids, paper_design, signal, stderr, without_costs};
+use crate::support::{
+    TestFolder, histories, ids, json_of, paper_design, signal, stderr, without_costs,
+};
 
 /// One long film job on the coarsest mesh, packed at first, and a short one.
 fn study() -> Value {
@@ -101,20 +104,70 @@ fn hangup_ignored() -> bool {
 }
 
 #[test]
-fn a_damaged_checkpoint_costs_time_only() {
-    let whole = TestFolder::finished(&study());
-    let folder = TestFolder::new(&study());
-    let mut child = running(&folder);
-    signal(&child, "-TERM");
-    assert_eq!(child.wait().unwrap().code(), Some(143));
-    let path = files(&folder, "checkpoints").remove(0);
-    let text = fs::read_to_string(&path).unwrap();
-    fs::write(&path, text.replacen("0.0", "0.1", 1)).unwrap();
+fn a_run_that_stops_at_any_time_leaves_no_damage_and_continues_with_the_same_bits() {
+    let mut study = study();
+    study["grid"] =
+        json!({"integrator": ["explicit", "implicit", "hybrid"], "end_time": ["0.8 s"]});
+    let whole = TestFolder::finished(&study);
+    let folder = TestFolder::new(&study);
+    let mut stored = 0;
+    // Between two kills a job stores a checkpoint, or it would be set aside.
+    let stops = ["INT", "KILL", "TERM", "INT", "KILL", "TERM"];
+    for (name, pause) in stops.into_iter().zip((40..).step_by(40)) {
+        let mut child = folder.billow(&["run", "grid.json", "--threads", "1"]).spawn().unwrap();
+        let process = format!("\"process\":\"{}-", child.id());
+        wait_until(&mut child, "its first job", || {
+            let text = fs::read_to_string(folder.results().join("attempts.jsonl"));
+            text.is_ok_and(|text| text.contains(&process) && text.lines().count() > 1)
+        });
+        sleep(Duration::from_millis(pause));
+        signal(&child, &format!("-{name}"));
+        let output = child.wait_with_output().unwrap();
+        let code = match name {
+            "INT" => Some(130),
+            "TERM" => Some(143),
+            _ => None,
+        };
+        assert_eq!(output.status.code(), code, "{}", stderr(&output));
+        assert!(!stderr(&output).contains("from its beginning"), "{}", stderr(&output));
+        stored += files(&folder, "checkpoints").len();
+        let status = folder.stdout(&["status", "results/grid"]);
+        assert!(!status.contains("doctor"), "{name}: {status}");
+        let times = status.matches(" at ").count();
+        assert_eq!(times, files(&folder, "checkpoints").len(), "{name}: {status}");
+        let findings = json_of(&folder, &["doctor"]);
+        assert!(code.is_none() || findings == json!([]), "{name}: {findings}");
+    }
+    assert!(stored > 2, "the stops came too early");
     let output = folder.run(&["run", "grid.json"]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let said = stderr(&output);
-    assert!(said.contains("checkpoint of job") && said.contains("from its beginning"), "{said}");
+    assert!(!stderr(&output).contains("from its beginning"), "{}", stderr(&output));
     assert_same_bits(&folder, &whole);
+}
+
+#[test]
+fn a_damaged_checkpoint_costs_time_only() {
+    let changed = |text: &str| text.replacen("0.0", "0.1", 1);
+    // Valid for its job, but of a program with other tracks.
+    let misfit = |text: &str| {
+        let mut object: Value = serde_json::from_str(&seal::open(text).unwrap()).unwrap();
+        object["run"]["tracks"][0] = json!([]);
+        seal::seal(&object.to_string())
+    };
+    let whole = TestFolder::finished(&study());
+    for damage in [&changed as &dyn Fn(&str) -> String, &misfit] {
+        let folder = TestFolder::new(&study());
+        let mut child = running(&folder);
+        signal(&child, "-TERM");
+        assert_eq!(child.wait().unwrap().code(), Some(143));
+        let path = files(&folder, "checkpoints").remove(0);
+        fs::write(&path, damage(&fs::read_to_string(&path).unwrap())).unwrap();
+        let output = folder.run(&["run", "grid.json"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let said = stderr(&output);
+        let note = ["checkpoint of job", "from its beginning"];
+        assert!(note.iter().all(|part| said.contains(part)), "{said}");
+        assert_same_bits(&folder, &whole);
+    }
 }
 
 #[test]

@@ -5,7 +5,6 @@ use std::panic::{self, AssertUnwindSafe};
 use std::sync::Once;
 
 use billow_solver::models::{self, ResumeError, Stored};
-use billow_solver::output::checkpoint::CheckpointError;
 use billow_solver::output::measures::{self, NoReference};
 use billow_solver::output::outcome::{Deployment, Stop};
 use billow_solver::platform::simd::InstructionSet;
@@ -87,8 +86,8 @@ impl Solver {
             let stored = Stored { fingerprint: id.as_str(), text };
             match models::resume(self.instruction_set, scene, &stored, attempt) {
                 Ok(deployment) => return Ok(deployment),
-                Err(ResumeError::Scene(error)) => return Err(error),
-                Err(ResumeError::Checkpoint(error)) => task.control.note(unusable(id, &error)),
+                // A scene that cannot be started either is refused below.
+                Err(error) => task.control.note(unusable(id, &error)),
             }
         }
         models::solve(self.instruction_set, scene, attempt)
@@ -115,7 +114,7 @@ impl Solver {
 }
 
 /// The note about a checkpoint that cannot be used.
-fn unusable(id: &JobId, error: &CheckpointError) -> String {
+fn unusable(id: &JobId, error: &ResumeError) -> String {
     format!("checkpoint of job {}: {error}; the job starts from its beginning", id.short())
 }
 

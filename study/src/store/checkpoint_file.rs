@@ -6,52 +6,28 @@
 use std::io;
 use std::path::PathBuf;
 
-use billow_solver::platform::seal;
-use serde::Deserialize;
+use billow_solver::integrators::StoredFilm;
+use billow_solver::models::run::Run;
+use billow_solver::output::checkpoint::{Checkpoint, CheckpointError};
 
 use crate::job::JobId;
 use crate::platform::error;
 use crate::platform::files::{self, disk_error};
 use crate::store::results::Results;
 
-/// The part of a checkpoint that says whose it is and how far the run is.
-#[derive(Deserialize)]
-struct Head {
-    scene: String,
-    state: Film,
-}
-
-/// A film as it is stored, beside what its integrator keeps.
-#[derive(Deserialize)]
-struct Film {
-    state: State,
-}
-
-impl Head {
-    fn read(id: &JobId, text: &str) -> Result<Self, String> {
-        let object = seal::open(text).map_err(|error| error.to_string())?;
-        let head: Self = serde_json::from_str(&object).map_err(|error| error.to_string())?;
-        if head.scene == id.as_str() {
-            Ok(head)
-        } else {
-            Err(format!("it belongs to the job {}", head.scene))
-        }
-    }
-}
-
-#[derive(Deserialize)]
-struct State {
-    time: f64,
-}
+/// A checkpoint as a run resumes from it.
+type FilmCheckpoint = Checkpoint<StoredFilm, Run>;
 
 impl Results<'_> {
     /// Simulated time of a job's checkpoint, s; `None` without a readable one.
     pub fn checkpoint_time(&self, id: &JobId) -> Option<f64> {
         let text = self.read_checkpoint(id).ok()??;
-        Head::read(id, &text).ok().map(|head| head.state.state.time)
+        let checkpoint = FilmCheckpoint::from_text(&text, id.as_str()).ok()?;
+        Some(checkpoint.state.state.time)
     }
 
-    /// Checkpoints that are damaged or belong to another job, and what is wrong with them.
+    /// Checkpoints that are damaged or belong to another job, and what is wrong with them. One of another version is not:
+    /// its job starts from its beginning.
     ///
     /// # Errors
     /// [`error::Error::Disk`].
@@ -60,7 +36,13 @@ impl Results<'_> {
         for id in self.checkpoints()? {
             let problem = match self.read_checkpoint(&id) {
                 Ok(None) => None,
-                Ok(Some(text)) => Head::read(&id, &text).err(),
+                Ok(Some(text)) => match FilmCheckpoint::from_text(&text, id.as_str()) {
+                    Ok(_)
+                    | Err(CheckpointError::Version { .. } | CheckpointError::Physics { .. }) => {
+                        None
+                    }
+                    Err(error) => Some(error.to_string()),
+                },
                 Err(error) => Some(error.to_string()),
             };
             damaged.extend(problem.map(|problem| (self.checkpoint_path(&id), problem)));
@@ -132,6 +114,8 @@ impl Results<'_> {
 
 #[cfg(test)]
 mod tests {
+    use billow_solver::platform::seal;
+
     use super::*;
     use crate::platform::files::Disk;
 
@@ -149,12 +133,10 @@ mod tests {
         assert_eq!(results.checkpoints().unwrap(), std::slice::from_ref(&id));
         assert_eq!(results.checkpoint_time(&id), None);
         assert_eq!(results.damaged_checkpoints().unwrap().len(), 1);
-        let object =
-            format!(r#"{{"scene":"{id}","state":{{"state":{{"time":0.25}},"integrator":7}}}}"#);
-        results.write_checkpoint(&id, &seal::seal(&object)).unwrap();
-        assert_eq!(results.checkpoint_time(&id), Some(0.25));
-        assert!(results.damaged_checkpoints().unwrap().is_empty());
-        results.write_checkpoint(&id, &seal::seal(&object).replace("0.25", "0.26")).unwrap();
+        let other = r#"{"format":"billow-checkpoint","version":1,"physics_version":0}"#;
+        results.write_checkpoint(&id, &seal::seal(other)).unwrap();
+        assert!(results.damaged_checkpoints().unwrap().is_empty(), "of another version");
+        results.write_checkpoint(&id, other).unwrap();
         assert_eq!(results.damaged_checkpoints().unwrap()[0].0, results.checkpoint_path(&id));
         results.remove_checkpoint(&id).unwrap();
         results.remove_checkpoint(&id).unwrap();
