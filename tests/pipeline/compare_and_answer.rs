@@ -57,6 +57,7 @@ fn a_run_ends_with_the_answer_to_its_question() {
     let said = folder.stdout(&["run", "grid.json", "-q"]);
     assert!(said.lines().count() <= 32, "{said}");
     assert!(said.contains("\nDo more panels help?\n"), "{said}");
+    assert!(said.contains("  assumed  vacuum; no gravity; no floor; stack 40 mm high"), "{said}");
     assert!(said.contains("  deployed 16 of 16 jobs"), "{said}");
     assert!(said.contains("not counted by this model"), "{said}");
     let next = "billow compare results/grid --by residual_gas_mass --base \"0 g\"";
@@ -74,6 +75,9 @@ fn a_run_ends_with_the_answer_to_its_question() {
     let residual = of("ledger_residual").into_iter().fold(0.0, f64::max);
     assert_eq!(answer["trust"]["ledger_residual"].as_f64(), Some(residual));
     assert!(answer["trust"]["passages"].is_null());
+    assert_eq!(answer["assumptions"][0], "vacuum");
+    let planned = stderr(&folder.run(&["plan", "grid.json"]));
+    assert!(planned.contains("\nassumed: vacuum; no gravity; no floor; "), "{planned}");
 
     // Every M and ratio that is feasible at N 5 is feasible at N 6. The test computes the medians itself.
     let medians = answer["comparisons"].as_array().unwrap();

@@ -116,6 +116,17 @@ pub fn brief_number(number: f64) -> String {
     format!("{number:.3e}").parse().map_or_else(|_| number.to_string(), short_number)
 }
 
+/// Numbers as text: the one, or the smallest and the largest; `None` without any.
+pub fn range_text(
+    numbers: impl IntoIterator<Item = f64>,
+    text: fn(f64) -> String,
+) -> Option<String> {
+    let ends = numbers.into_iter().map(|number| [number; 2]);
+    let ends = ends.reduce(|[low, high], [number, _]| [low.min(number), high.max(number)]);
+    let [low, high] = ends?.map(text);
+    Some(if low == high { low } else { format!("{low} to {high}") })
+}
+
 fn trim_zeros(digits: &str) -> &str {
     if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
 }

@@ -3,6 +3,7 @@
 use billow_solver::geometry::fold::{FoldDesign, FoldPattern};
 use billow_solver::geometry::mesh::{Mesh, Shape};
 use billow_solver::geometry::shell::Shell;
+use billow_solver::scene::inflow::Schedule;
 use billow_solver::scene::{GasSupply, Scene};
 
 use crate::input::settings::Settings;
@@ -11,16 +12,22 @@ use crate::platform::error::InputError;
 
 /// Volume of the stowed capsule of a design, m³: the same on every mesh, because facets are flat. `None` for
 /// a design without a pattern.
-fn stowed_volume(design: &FoldDesign) -> Option<f64> {
+pub(super) fn stowed_volume(design: &FoldDesign) -> Option<f64> {
     let pattern = FoldPattern::new(design).ok()?;
     let shell = Shell::of_mesh(&Mesh::new(&pattern, 1, Shape::Stowed(design.stowed_height)).ok()?);
     Some(shell.volume(|node| shell.positions[node as usize]))
 }
 
-/// Pressure (Pa) of the gas inside a stowed capsule at the start.
-fn pressure_at_start(scene: &Scene, stowed_volume: f64) -> f64 {
+/// Pressure (Pa) of a mass of gas inside a stowed capsule, at film temperature.
+fn pressure(scene: &Scene, mass: f64, stowed_volume: f64) -> f64 {
+    mass * scene.gas.species.gas_constant * scene.film.temperature / stowed_volume
+}
+
+/// Pressure (Pa) inside a stowed capsule just before its release, at film temperature.
+pub(super) fn pressure_at_release(scene: &Scene, stowed_volume: f64) -> f64 {
     let gas = &scene.gas;
-    gas.initial_mass * gas.species.gas_constant * scene.film.temperature / stowed_volume
+    let mass = gas.initial_mass + Schedule::new(&gas.windows).mass_until(scene.release_time);
+    pressure(scene, mass, stowed_volume)
 }
 
 /// Mass (kg) of gas that fills the stowed capsule at ambient pressure and film temperature.
@@ -71,6 +78,6 @@ pub(crate) fn pressure_below_ambient(scene: &Scene) -> Option<f64> {
     if ambient <= 0.0 {
         return None;
     }
-    let pressure = pressure_at_start(scene, stowed_volume(&scene.design)?);
+    let pressure = pressure(scene, scene.gas.initial_mass, stowed_volume(&scene.design)?);
     (pressure < MIN_PRESSURE_RATIO * ambient).then_some(pressure)
 }

@@ -12,6 +12,7 @@
 //! these settings, `inflow.rs` its inflow windows, from numbers that `Settings::needed` takes. A study without strategies
 //! has one, `direct`, with one window, which takes the values of section `gas`; a burst of residual gas is a window too.
 
+pub mod assumptions;
 mod column;
 mod expand;
 mod filter;

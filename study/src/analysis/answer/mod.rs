@@ -19,6 +19,7 @@ use crate::job::result_limit::ResultLimit;
 use crate::job::row::{ColumnId, Counts, HEADLINE};
 use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
+use crate::study::assumptions::assumptions;
 use crate::study::{Study, Zipped};
 
 mod points;
@@ -43,6 +44,8 @@ const MIN_CHANGE_AT_END: f64 = 0.01;
 pub struct Answer {
     /// The question, as the study file has it.
     pub question: String,
+    /// What decides the numbers and is no result.
+    pub assumptions: Vec<String>,
     /// Numbers of rows by how they ended.
     pub counts: Counts,
     /// The trusted, deployed job with the smallest `t_90_z_rim_since_release`.
@@ -100,6 +103,7 @@ impl Answer {
     pub fn of(stored: &Stored<'_>, table: &Table) -> Self {
         let mut answer = Self::of_jobs(table, &stored.study.replicates());
         answer.question.clone_from(&stored.study.question);
+        answer.assumptions = assumptions(&stored.points);
         answer.largest_strain = largest_strain(stored);
         let rows: Vec<usize> = (0..table.rows()).collect();
         let (study, replicates) = (&stored.study, stored.study.replicates());

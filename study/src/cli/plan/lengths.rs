@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use billow_solver::models::film::capsule::{contact_distance, imperfection_amplitude};
 use billow_solver::scene::{ModelKind, Scene};
 
-use crate::input::value::short_number;
+use crate::input::value::{range_text, short_number};
 use crate::job::canonical_json;
 use crate::job::point::Point;
 
@@ -38,8 +38,8 @@ pub(super) fn in_use(points: &[&Point]) -> Option<String> {
     let named = ["contact distance", "imperfection amplitude"].iter().enumerate();
     let texts: Vec<String> = named
         .filter_map(|(index, name)| {
-            let values: Vec<f64> = known.values().filter_map(|lengths| lengths[index]).collect();
-            range(&values).map(|range| format!("{name} {range}"))
+            let values = known.values().filter_map(|lengths| Some(1e3 * lengths[index]?));
+            range_text(values, short_number).map(|range| format!("{name} {range} mm"))
         })
         .collect();
     (!texts.is_empty()).then(|| texts.join(", "))
@@ -52,12 +52,4 @@ fn lengths(scene: &Scene) -> Option<[Option<f64>; 2]> {
         Some(distance),
         imperfection_amplitude(&scene.design, scene.seed, scene.imperfection_amplitude).ok()?,
     ])
-}
-
-/// The smallest and the largest of these values (m), or the one value; `None` without any.
-fn range(values: &[f64]) -> Option<String> {
-    let [smallest, largest] = [f64::min, f64::max].map(|of| values.iter().copied().reduce(of));
-    let [smallest, largest] = [smallest?, largest?].map(|value| short_number(1e3 * value));
-    let several = if smallest == largest { String::new() } else { format!(" to {largest}") };
-    Some(format!("{smallest}{several} mm"))
 }

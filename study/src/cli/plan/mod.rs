@@ -24,12 +24,16 @@ use crate::job::point::Point;
 use crate::job::row::CellType;
 use crate::platform::error::Result;
 use crate::platform::files::Disk;
-use crate::print::{self, notes, output_error, print_table};
+use crate::print::{self, notes, output_error, print_table, wrapped};
 use crate::store::results::Results;
 use crate::store::stored::other_physics;
 use crate::store::table::{Column, Table};
 use crate::study::Study;
+use crate::study::assumptions::assumptions;
 use crate::study::plan::{Generation, PlanCounts, next_jobs};
+
+/// What stands before assumptions.
+const ASSUMED: &str = "assumed: ";
 
 /// Arguments of `billow plan`.
 #[derive(Debug, clap::Args)]
@@ -68,6 +72,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     out.flush().map_err(output_error)?;
     if !args.quiet.quiet {
         eprintln!("{}: {}", study.name, summary(&study, &counts));
+        for line in wrapped(&assumptions(&generation.points).join("; "), ASSUMED.len()) {
+            eprintln!("{ASSUMED}{line}");
+        }
         print_progress_and_forecast(args, &study, &generation)?;
         notes::print_warnings(&study);
         notes::print(&study);

@@ -18,6 +18,7 @@ pub fn json(answer: &Answer) -> Value {
     });
     json!({
         "question": answer.question,
+        "assumptions": answer.assumptions,
         "jobs": answer.counts.jobs(),
         "near_threshold": answer.counts.near_threshold,
         "still_moving": answer.still_moving,

@@ -30,13 +30,14 @@ const TOPIC_WIDTH: usize = 11;
 /// up to there, and short peaks of film that is pulled taut reach half of it.
 const MAX_PLAUSIBLE_STRAIN: f64 = 0.1;
 
-/// Prints the answer: the deployed jobs, the safe points, each search of a border, the fastest job, the jobs with the
+/// Prints the answer: the assumptions, the deployed jobs, the safe points, each search of a border, the fastest job, the jobs with the
 /// highest velocity and energy, the audit, and which value of every parameter is better.
 pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out)?;
     if !answer.question.is_empty() {
         writeln!(out, "{}", crate::platform::quote::printable(&answer.question))?;
     }
+    print_topic("assumed", &[answer.assumptions.join("; ")], out)?;
     let deployed = match &answer.points {
         Some(points) => safe::deployed(points, &answer.counts),
         None => deployed(answer),

@@ -1,0 +1,122 @@
+//! What decides the numbers of a study and is no result of it, from the values of its points.
+
+use billow_solver::geometry::fold::FoldDesign;
+use billow_solver::scene::Scene;
+use billow_solver::scene::paper::LOSS_FACTOR;
+
+use super::ground::{pressure_at_release, stowed_volume};
+use crate::input::keys;
+use crate::input::value::{brief_number, range_text, short_number};
+use crate::job::point::Point;
+
+/// Most designs whose stacks are measured. Chosen: milliseconds.
+const MAX_DESIGNS: usize = 100;
+
+/// The assumptions of these points, one short text each: a value, or its range over the points.
+pub fn assumptions(points: &[Point]) -> Vec<String> {
+    let feasible = points.iter().filter(|point| point.infeasible.is_none());
+    let scenes: Vec<&Scene> = feasible.map(|point| &*point.job.scene).collect();
+    let range =
+        |of: fn(&Scene) -> f64| range_text(scenes.iter().map(|scene| of(scene)), short_number);
+    // Only a key that a model of these points reads.
+    let used = |key: &str, text: String| {
+        let reads = |scene: &&Scene| !keys::model(scene.solver.model).ignores.contains(&key);
+        scenes.iter().any(reads).then_some(text)
+    };
+    let (Some(ambient), Some(gravity), Some(loss), Some(friction)) = (
+        range(|scene| scene.gas.ambient_pressure),
+        range(|scene| scene.gravity),
+        range(|scene| scene.film.loss_factor),
+        range(|scene| scene.contact.friction),
+    ) else {
+        return Vec::new();
+    };
+    let or = |range: &str, zero: &str, text: String| {
+        if range == "0" { zero.to_owned() } else { text }
+    };
+    let assumed = if loss == short_number(LOSS_FACTOR) { ", assumed" } else { "" };
+    let mut texts = vec![
+        or(&ambient, "vacuum", format!("ambient pressure {ambient} Pa")),
+        or(&gravity, "no gravity", format!("gravity {gravity} m/s²")),
+        "no floor".to_owned(),
+    ];
+    texts.extend(stacks(&scenes));
+    let loss = format!("film loss {loss}{assumed} (polyimide 0.003 to 0.03)");
+    texts.extend(used("film.loss_factor", loss));
+    let friction = or(&friction, "no friction", format!("friction {friction}"));
+    texts.extend(used("contact.friction", friction));
+    texts.push("uniform gas pressure".to_owned());
+    texts
+}
+
+/// Height and volume of the stowed stacks, and the pressure in them at the release where gas is inside before it.
+fn stacks(scenes: &[&Scene]) -> Vec<String> {
+    let heights = scenes.iter().map(|scene| 1e3 * scene.design.stowed_height);
+    let Some(height) = range_text(heights, short_number) else { return Vec::new() };
+    let mut volumes: Vec<(&FoldDesign, f64)> = Vec::new();
+    let mut pressures = Vec::new();
+    for scene in scenes {
+        let known = volumes.iter().rev().find(|(design, _)| **design == scene.design);
+        let volume = match known.map(|(_, volume)| *volume) {
+            None if volumes.len() == MAX_DESIGNS => return vec![format!("stack {height} mm high")],
+            None => {
+                let Some(volume) = stowed_volume(&scene.design) else { continue };
+                volumes.push((&scene.design, volume));
+                volume
+            }
+            Some(volume) => volume,
+        };
+        pressures.push(pressure_at_release(scene, volume));
+    }
+    let litres = volumes.iter().map(|(_, volume)| 1e3 * volume);
+    let volume = range_text(litres, brief_number).map(|volume| format!(", {volume} litres"));
+    let mut texts = vec![format!("stack {height} mm high{}", volume.unwrap_or_default())];
+    let pressure = range_text(pressures, brief_number).filter(|pressure| pressure != "0");
+    texts.extend(pressure.map(|pressure| format!("{pressure} Pa in it before the release")));
+    texts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::{MAX_POINTS, Study};
+
+    fn of(grid: &str) -> String {
+        let text = format!(
+            r#"{{
+                "design": {{"N": 6, "M": 3, "bottom_radius": 0.5, "top_radius": 0.365, "height": 1}},
+                "gas": {{"mass_flow_rate": 0.005, "residual_gas": "stored"}},
+                "strategies": {{"held": {{"release_time": "0.1 s", "inflow": [{{"from": 0}}]}}, "direct": {{}}}},
+                "solver": {{"end_time": 0.5}}, "strategy": "direct", "grid": {grid}
+            }}"#
+        );
+        let study = Study::from_text(&text, "test.json", "test", &[], MAX_POINTS).unwrap();
+        assumptions(study.points()).join("; ")
+    }
+
+    #[test]
+    fn assumptions_are_the_values_of_the_points_or_their_range() {
+        assert_eq!(
+            of("{}"),
+            "vacuum; no gravity; no floor; stack 40 mm high, 15.12 litres; film loss 0.015, assumed (polyimide 0.003 to \
+             0.03); no friction; uniform gas pressure"
+        );
+        // 0.1 g of nitrogen at 293 K, m R T/V; a capsule of 10 mm does not fold.
+        assert_eq!(
+            of(
+                r#"{"film.loss_factor": [0.003, 0.02], "residual_gas_mass": [0, "0.1 g"], "gravity": [-1.62],
+                "friction": [0.2], "height": [1, 0.01]}"#
+            ),
+            "vacuum; gravity -1.62 m/s²; no floor; stack 40 mm high, 15.12 litres; 0 to 575.3 Pa in it before the \
+             release; film loss 0.003 to 0.02 (polyimide 0.003 to 0.03); friction 0.2; uniform gas pressure"
+        );
+        let piston =
+            of(r#"{"model": ["piston"], "ambient_pressure": [10], "residual_gas": ["ambient"]}"#);
+        assert!(piston.starts_with("ambient pressure 10 Pa; no gravity"), "{piston}");
+        assert!(piston.contains("; 10 Pa in it") && !piston.contains("loss"), "{piston}");
+        assert_eq!(of(r#"{"height": [0.01]}"#), "");
+        // 0.5 g before the release.
+        let held = of(r#"{"strategy": ["held"]}"#);
+        assert!(held.contains("; 2876 Pa in it before the release"), "{held}");
+    }
+}
