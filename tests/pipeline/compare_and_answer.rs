@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::support::{TestFolder, grid, json_of, small_grid, stderr};
+use crate::support::{TestFolder, grid, json_of, paper_design, small_grid, stderr};
 
 #[test]
 fn compare_pairs_rows_that_differ_in_one_parameter_only() {
@@ -92,4 +92,31 @@ fn a_run_ends_with_the_answer_to_its_question() {
         speeds.sort_by(f64::total_cmp);
         assert_eq!(value["peak_kinetic_energy"].as_f64(), Some(0.5 * speeds[3] + 0.5 * speeds[4]));
     }
+}
+
+#[test]
+fn an_answer_shows_what_is_limited_first_and_names_mixed_points() {
+    let mut study = grid(&json!({ "mass_flow_rate": ["1 g/s", "5 g/s"] }));
+    study["design"] = paper_design(8);
+    study["gas"]["residual_gas"] = json!("stored");
+    study["gas"]["residual_gas_mass"] = json!("0.3 g");
+    study["strategies"] = json!({ "direct": { "inflow": [{ "from": "0.3 s" }] } });
+    study["replicates"] = json!({ "film.thickness": ["25 um", "26 um"] });
+    let folder = TestFolder::finished(&study);
+    let rows = folder.rows("results/grid");
+    let speeds: Vec<f64> = rows.iter().filter_map(|row| row["peak_vz"].as_f64()).collect();
+    let limit = format!("limits.peak_vz=\"< {} m/s\"", 0.5 * (speeds[0] + speeds[1]));
+    let again = ["run", "grid.json", "-q", "--set", &limit];
+    let said = folder.stdout(&again);
+    assert!(said.contains("  mixed    mass_flow_rate=1 g/s: 1 of 2 safe\n"), "{said}");
+    assert!(said.contains("mass_flow_rate=5 g/s: 1 of 2 safe\n  worst    peak_vz "), "{said}");
+    let reason =
+        "peak_vz the same with each value: its peak comes before the inflow that this changes";
+    assert!(said.contains(reason), "{said}");
+    let answer = json_of(&folder, &again);
+    let largest = speeds.iter().copied().fold(0.0, f64::max);
+    assert_eq!(answer["worst"][0]["value"].as_f64(), Some(largest));
+    assert_eq!(answer["comparisons"][0]["measures"][0]["measure"], "peak_vz");
+    assert_eq!(answer["no_effect"][0]["parameter"], "mass_flow_rate");
+    assert_eq!(answer["mixed"][1]["safe"], json!({ "met": 1, "of": 2 }));
 }

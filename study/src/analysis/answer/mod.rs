@@ -15,19 +15,20 @@ use crate::input::units::DisplayUnit;
 use crate::input::value::{Value, json_value};
 use crate::job::Status;
 use crate::job::point::Point;
-use crate::job::result_limit::ResultLimit;
+use crate::job::result_limit::{Condition, ResultLimit};
 use crate::job::row::{ColumnId, Counts, HEADLINE};
 use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
 use crate::study::assumptions::assumptions;
 use crate::study::{Study, Zipped};
 
+mod inflow;
 mod points;
 mod safety;
 mod searches;
 mod trust;
 
-pub use points::{PointCounts, VerdictSensitivity};
+pub use points::{MixedPoint, PointCounts, VerdictSensitivity};
 pub use safety::{SafeCounts, Safety};
 pub use searches::{Found, Searches};
 pub use trust::Trust;
@@ -48,6 +49,8 @@ pub struct Answer {
     pub assumptions: Vec<String>,
     /// Numbers of rows by how they ended.
     pub counts: Counts,
+    /// For each limit of a number the job with the worst value: a trusted one, or a done one where none can be trusted.
+    pub worst: Vec<Extreme>,
     /// The trusted, deployed job with the smallest `t_90_z_rim_since_release`.
     pub fastest: Option<Extreme>,
     /// The job with the largest `peak_vz`: a trusted one, or a done one where none can be trusted.
@@ -61,10 +64,14 @@ pub struct Answer {
     pub largest_strain: f64,
     /// The values of each parameter that varies, ranked with all other parameters equal, or why they cannot be.
     pub comparisons: Vec<(String, Result<Ranking, String>)>,
+    /// Parameters, each with a measure that it cannot change: the peak comes before the inflow that it changes.
+    pub no_effect: Vec<(String, ColumnId)>,
     /// Numbers of points, in a study with replicates.
     pub points: Option<PointCounts>,
     /// Number of runs that did not deploy and still moved at their end.
     pub still_moving: usize,
+    /// The points whose runs do not all end alike.
+    pub mixed: Vec<MixedPoint>,
     /// Points whose verdict depends on a numerical choice.
     pub sensitivity: Option<VerdictSensitivity>,
     /// Safe points, in a study with limits.
@@ -110,10 +117,27 @@ impl Answer {
         let jobs = Condensed::of(table, &table.one_row_per_job(&rows), &replicates);
         answer.points = (!replicates.is_empty()).then(|| PointCounts::of(&jobs, &replicates));
         answer.sensitivity = VerdictSensitivity::of(table, &jobs);
+        answer.mixed = MixedPoint::all(&jobs);
         // A large study needs the memory.
         drop(jobs);
-        answer.safety = Safety::of(table, study.result_limits(), &rows, &replicates);
+        let limits = study.result_limits();
+        let of_jobs = table.one_row_per_job(&rows);
+        let worst = bounds(limits).filter_map(|(measure, above)| {
+            let worse: fn(f64, f64) -> bool = if above { |a, b| a < b } else { |a, b| a > b };
+            most(table, &of_jobs, &replicates, measure, worse)
+        });
+        answer.worst = worst.collect();
+        answer.safety = Safety::of(table, limits, &rows, &replicates);
         answer.comparisons = comparisons(table, &rows, study);
+        let scenes = stored.points.iter().map(|point| (point.job.id.as_str(), &*point.job.scene));
+        let scenes = scenes.collect();
+        let compared = answer.comparisons.iter().filter(|(_, ranking)| ranking.is_ok());
+        let no_effect = compared.flat_map(|(by, _)| {
+            inflow::peaks_before(table, by, &scenes)
+                .into_iter()
+                .map(|measure| (by.clone(), measure))
+        });
+        answer.no_effect = no_effect.collect();
         answer.searches = Searches::of(stored, table);
         answer
     }
@@ -137,18 +161,21 @@ impl Answer {
         };
         let best: Vec<usize> = rows.iter().copied().filter(can_be_best).collect();
         let least = |measure| extreme(table, &best, replicates, measure, |a, b| a < b);
-        let trusted: Vec<usize> =
-            rows.iter().copied().filter(|row| table.is_trusted(*row)).collect();
-        let most = |measure| {
-            let most = |rows: &[usize]| extreme(table, rows, replicates, measure, |a, b| a > b);
-            most(&trusted).or_else(|| most(&rows))
-        };
+        let most = |measure| most(table, &rows, replicates, measure, |a, b| a > b);
         answer.fastest = least(HEADLINE[0]);
         answer.hardest = most(ColumnId::PeakVz);
         answer.most_energy = most(ColumnId::PeakKineticEnergy);
         answer.trust = trust::trust(table, &rows);
         answer
     }
+}
+
+/// The measures with a limit that is a number, and whether they must be above it.
+fn bounds(limits: &[ResultLimit]) -> impl Iterator<Item = (ColumnId, bool)> {
+    limits.iter().filter_map(|limit| match limit.condition {
+        Condition::Bound { above, .. } => Some((limit.measure, above)),
+        Condition::Is(_) => None,
+    })
 }
 
 /// The values of each parameter that varies and repeats no point.
@@ -184,13 +211,17 @@ fn comparison(
     zipped: &dyn Fn(&str) -> Vec<Zipped>,
 ) -> Result<Ranking, String> {
     let by = by.to_owned();
+    // What is limited first.
+    let mut measures: Vec<&str> = bounds(limits).map(|(measure, _)| measure.name()).collect();
+    let others = DEFAULT_MEASURES.into_iter().filter(|measure| !measures.contains(measure));
+    measures.extend(others.collect::<Vec<_>>());
     let ranking = Ranking::of(&RankingInput {
         table,
         rows,
         by: std::slice::from_ref(&by),
         replicates,
         limits,
-        measures: &DEFAULT_MEASURES,
+        measures: &measures,
         zipped,
     })?;
     if ranking.is_one_job {
@@ -230,6 +261,20 @@ fn parameters<S: Serializer>(
 /// Writes names with their numbers as an object.
 fn named<S: Serializer>(numbers: &[(String, usize)], to: S) -> Result<S::Ok, S::Error> {
     to.collect_map(numbers.iter().map(|(name, number)| (name, number)))
+}
+
+/// The first trusted job with the largest value of a measure, or where `larger` says so the smallest; a done one where
+/// none can be trusted.
+fn most(
+    table: &Table,
+    rows: &[usize],
+    replicates: &[String],
+    measure: ColumnId,
+    larger: fn(f64, f64) -> bool,
+) -> Option<Extreme> {
+    let trusted: Vec<usize> = rows.iter().copied().filter(|row| table.is_trusted(*row)).collect();
+    let most = |rows: &[usize]| extreme(table, rows, replicates, measure, larger);
+    most(&trusted).or_else(|| most(rows))
 }
 
 /// The first done job with the best value of a measure.

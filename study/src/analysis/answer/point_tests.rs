@@ -111,3 +111,25 @@ fn overlapping_ranges_are_equal_in_pairs_and_in_the_best_values() {
     assert_eq!(compared([9.5, 15.0]), (1, true));
     assert_eq!(compared([11.0, 15.0]), (0, false));
 }
+
+#[test]
+fn a_mixed_point_is_named_and_what_is_limited_comes_first() {
+    let table = table(&runs());
+    let mixed = MixedPoint::all(&points(&table));
+    let [point] = &mixed[..] else { panic!("{mixed:?}") };
+    let values: Vec<String> =
+        point.parameters.iter().map(|(_, value, _)| value.to_string()).collect();
+    assert_eq!(values, ["rapid", "2"]);
+    assert_eq!((point.deployed.met, point.deployed.of, point.safe.of), (1, 2, 0));
+    let seed = ["seed".to_owned()];
+    let first = |measure| {
+        let limits = limits(25.0).into_iter().map(|limit| ResultLimit { measure, ..limit });
+        let limits: Vec<ResultLimit> = limits.take(1).collect();
+        let ranking =
+            comparison(&table, &all(&table), "strategy", (&limits, &seed), &|_| Vec::new());
+        ranking.unwrap().measures[0].column.name.clone()
+    };
+    for measure in [ColumnId::PeakVz, ColumnId::PeakKineticEnergy] {
+        assert_eq!(first(measure), measure.name());
+    }
+}

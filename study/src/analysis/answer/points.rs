@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::named;
+use super::{named, parameters, parameters_of};
 use crate::analysis::replicates::Condensed;
+use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
+use crate::job::proportion::Proportion;
 use crate::job::row::DerivedColumn;
 use crate::store::table::Table;
 
@@ -43,6 +45,30 @@ impl PointCounts {
             } += 1;
         }
         counts
+    }
+}
+
+/// A point whose runs do not all end alike.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MixedPoint {
+    /// Its parameters, and the units in which they are shown.
+    #[serde(serialize_with = "parameters")]
+    pub parameters: Vec<(String, Value, DisplayUnit)>,
+    /// Of the runs with a verdict, those that deployed.
+    pub deployed: Proportion,
+    /// Of the runs that the limits can judge, those that are safe.
+    pub safe: Proportion,
+}
+
+impl MixedPoint {
+    /// The points of which some runs deploy, or are safe, and some do not.
+    pub fn all(points: &Condensed) -> Vec<Self> {
+        let of = |point: usize| {
+            let (deployed, safe) = (points.runs[point].deployed, points.runs[point].safe);
+            let mixed = deployed.is_mixed() || safe.is_mixed();
+            mixed.then(|| Self { parameters: parameters_of(&points.table, point), deployed, safe })
+        };
+        (0..points.runs.len()).filter_map(of).collect()
     }
 }
 

@@ -9,24 +9,34 @@ use crate::input::value::{Value, brief_number};
 use crate::job::row::{CellType, ColumnId, HEADLINE};
 use crate::print::{MAX_VALUES, count};
 
+/// Why a parameter has no effect on a measure.
+pub(super) const BEFORE_INFLOW: &str = "its peak comes before the inflow that this changes";
+
 /// One line per parameter.
 pub(super) fn lines(answer: &Answer) -> Vec<String> {
     let ranked = answer.comparisons.iter().filter_map(|(_, ranking)| ranking.as_ref().ok());
-    ranked.map(line).collect()
+    ranked.map(|ranking| line(answer, ranking)).collect()
 }
 
-fn line(ranking: &Ranking) -> String {
+fn line(answer: &Answer, ranking: &Ranking) -> String {
     let Some(by) = ranking.by.first() else { return String::new() };
     let mut parts = outcomes(ranking).into_iter().collect::<Vec<_>>();
     // Of a choice, as a strategy is, the speed counts too: both loads say which one is gentler.
     let with_speed = by.cell_type == CellType::Text;
     let is_shown = |measure: &&RankedMeasure| {
         let name = &measure.column.name;
-        HEADLINE.iter().any(|id| id.name() == name)
+        answer.worst.iter().any(|worst| worst.measure == *name)
+            || HEADLINE.iter().any(|id| id.name() == name)
             || with_speed && *name == ColumnId::PeakVz.name()
     };
     for (index, measure) in ranking.measures.iter().enumerate().filter(|(_, m)| is_shown(m)) {
-        parts.extend(measured(ranking, index, measure));
+        let name = &measure.column.name;
+        let has_none = answer.no_effect.iter().any(|(b, m)| *b == by.name && m.name() == name);
+        if has_none {
+            parts.push(format!("{name} the same with each value: {BEFORE_INFLOW}"));
+        } else {
+            parts.extend(measured(ranking, index, measure));
+        }
     }
     let mut text = format!("{}: {}; {}", by.name, parts.join("; "), count(ranking.sets, "set"));
     if !ranking.carried.is_empty() {

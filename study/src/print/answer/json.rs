@@ -7,6 +7,8 @@ use crate::analysis::ranking::Ranking;
 use crate::input::value::json_value;
 use crate::print::json_objects;
 
+use super::comparisons::BEFORE_INFLOW;
+
 /// The answer as JSON keys.
 pub fn json(answer: &Answer) -> Value {
     let all = || answer.comparisons.iter();
@@ -16,12 +18,16 @@ pub fn json(answer: &Answer) -> Value {
         let reason = ranking.as_ref().err()?;
         Some(json!({"parameter": parameter, "reason": reason}))
     });
+    let no_effect = answer.no_effect.iter().map(|(parameter, measure)| {
+        json!({"parameter": parameter, "measure": measure.name(), "reason": BEFORE_INFLOW})
+    });
     json!({
         "question": answer.question,
         "assumptions": answer.assumptions,
         "jobs": answer.counts.jobs(),
         "near_threshold": answer.counts.near_threshold,
         "still_moving": answer.still_moving,
+        "worst": answer.worst,
         "fastest": answer.fastest,
         "hardest": answer.hardest,
         "most_energy": answer.most_energy,
@@ -29,7 +35,9 @@ pub fn json(answer: &Answer) -> Value {
         "film_stress_over_modulus": answer.largest_strain,
         "comparisons": compared.collect::<Vec<_>>(),
         "not_compared": not_compared.collect::<Vec<_>>(),
+        "no_effect": no_effect.collect::<Vec<_>>(),
         "points_with_runs": answer.points,
+        "mixed": answer.mixed,
         "verdict_depends_on": answer.sensitivity,
         "safe": answer.safety,
         "borders": answer.searches.as_ref().map(borders_json),

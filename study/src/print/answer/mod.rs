@@ -9,7 +9,7 @@ use billow_solver::output::measures::Verdict;
 
 use crate::analysis::answer::{Answer, Extreme, Trust};
 use crate::analysis::ranking::Ranking;
-use crate::input::units::{self, Dimension};
+use crate::input::units::{self, Dimension, DisplayUnit};
 use crate::input::value::{Value, brief_number};
 use crate::job::Status;
 use crate::job::row::ColumnId;
@@ -30,8 +30,8 @@ const TOPIC_WIDTH: usize = 11;
 /// up to there, and short peaks of film that is pulled taut reach half of it.
 const MAX_PLAUSIBLE_STRAIN: f64 = 0.1;
 
-/// Prints the answer: the assumptions, the deployed jobs, the safe points, each search of a border, the fastest job, the jobs with the
-/// highest velocity and energy, the audit, and which value of every parameter is better.
+/// Prints the answer: the assumptions, the deployed jobs, the safe points, each search of a border, the jobs with the
+/// extreme values, the audit, and which value of every parameter is better.
 pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out)?;
     if !answer.question.is_empty() {
@@ -47,6 +47,7 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     let sensitivity = answer.sensitivity.iter().map(safe::sensitivity);
     print_topic("depends", &sensitivity.collect::<Vec<_>>(), out)?;
     print_topic("safe", &answer.safety.iter().map(safe::safe).collect::<Vec<_>>(), out)?;
+    print_topic("mixed", &safe::mixed(&answer.mixed), out)?;
     // The border is what a study with a search asks for, so it stands before the single jobs.
     let borders = answer.searches.iter().flat_map(border::lines);
     print_topic("border", &borders.collect::<Vec<_>>(), out)?;
@@ -76,20 +77,21 @@ fn print_topic(topic: &str, texts: &[String], out: &mut dyn Write) -> io::Result
     Ok(())
 }
 
-/// The fastest job, and the jobs with the highest velocity and kinetic energy.
+/// The worst values of what is limited, the fastest job, and the highest kinetic energy and velocity. Values of one job
+/// stand in one line.
 fn print_extremes(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
-    if let Some(fastest) = &answer.fastest {
-        writeln!(out, "  fastest  {}: {}", value_text(fastest), job_text(fastest))?;
-    }
-    let Some(energy) = &answer.most_energy else { return Ok(()) };
-    let mut value = value_text(energy);
-    let speed = answer.hardest.as_ref();
-    if let Some(same) = speed.filter(|speed| speed.job == energy.job) {
-        let _ = write!(value, ", {}", value_text(same));
-    }
-    writeln!(out, "  hardest  {value}: {}", job_text(energy))?;
-    if let Some(other) = speed.filter(|speed| speed.job != energy.job) {
-        writeln!(out, "           {}: {}", value_text(other), job_text(other))?;
+    let is_shown = |extreme: &&Extreme| answer.worst.iter().all(|w| w.measure != extreme.measure);
+    let hardest = answer.most_energy.iter().chain(&answer.hardest).filter(is_shown);
+    for (mut topic, extremes) in [
+        ("worst", answer.worst.iter().collect::<Vec<_>>()),
+        ("fastest", answer.fastest.iter().filter(is_shown).collect()),
+        ("hardest", hardest.collect()),
+    ] {
+        for same in extremes.chunk_by(|a, b| a.job == b.job) {
+            let values: Vec<String> = same.iter().map(|extreme| value_text(extreme)).collect();
+            writeln!(out, "  {topic:<8} {}: {}", values.join(", "), job_text(same[0]))?;
+            topic = "";
+        }
     }
     Ok(())
 }
@@ -199,16 +201,19 @@ fn value_text(extreme: &Extreme) -> String {
 }
 
 fn job_text(extreme: &Extreme) -> String {
-    let parameters: Vec<String> = extreme
-        .parameters
-        .iter()
-        .map(|(name, value, unit)| format!("{name}={}", unit.quantity(value)))
-        .collect();
     let others = match extreme.others {
         0 => String::new(),
         others => format!(" (and {} with the same value)", count(others, "job")),
     };
-    format!("job {} {}{others}", &extreme.job[..8.min(extreme.job.len())], parameters.join(", "))
+    let parameters = parameters_text(&extreme.parameters);
+    format!("job {} {parameters}{others}", &extreme.job[..8.min(extreme.job.len())])
+}
+
+fn parameters_text(parameters: &[(String, Value, DisplayUnit)]) -> String {
+    let text = |(name, value, unit): &(String, Value, DisplayUnit)| {
+        format!("{name}={}", unit.quantity(value))
+    };
+    parameters.iter().map(text).collect::<Vec<_>>().join(", ")
 }
 
 /// The audit of all done jobs.

@@ -3,12 +3,12 @@
 
 use std::fmt::Write as _;
 
-use super::job_text;
-use crate::analysis::answer::{PointCounts, SafeCounts, Safety, VerdictSensitivity};
+use super::{job_text, parameters_text};
+use crate::analysis::answer::{MixedPoint, PointCounts, SafeCounts, Safety, VerdictSensitivity};
 use crate::input::value::brief_number;
 use crate::job::Status;
 use crate::job::row::Counts;
-use crate::print::count;
+use crate::print::{MAX_VALUES, count};
 
 /// Most limits that a line names as missed.
 const MAX_MISSED: usize = 3;
@@ -44,6 +44,22 @@ pub(super) fn deployed(points: &PointCounts, runs: &Counts) -> String {
         let _ = write!(text, "; {}", others.join(", "));
     }
     text
+}
+
+/// The points whose runs do not all end alike, by name: "N=6: 3 of 5 deploy, 2 of 5 safe".
+pub(super) fn mixed(points: &[MixedPoint]) -> Vec<String> {
+    let text = |point: &MixedPoint| {
+        let counts = [(point.deployed, "deploy"), (point.safe, "safe")];
+        let counts = counts.iter().filter(|(runs, _)| runs.is_mixed());
+        let counts = counts.map(|(runs, word)| format!("{} of {} {word}", runs.met, runs.of));
+        let counts = counts.collect::<Vec<_>>().join(", ");
+        format!("{}: {counts}", parameters_text(&point.parameters))
+    };
+    let mut texts: Vec<String> = points.iter().take(MAX_VALUES).map(text).collect();
+    if points.len() > MAX_VALUES {
+        texts.push(format!("and {} more", points.len() - MAX_VALUES));
+    }
+    texts
 }
 
 /// The points whose verdict depends on a numerical choice.
