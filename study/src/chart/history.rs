@@ -98,7 +98,7 @@ pub fn svg(
     notes.extend(not_drawn(source));
     notes.extend(source.runs_notes(None));
     let mut legends = encoding.legends(false);
-    legends.extend(source.runs_legend(Sample::Band));
+    legends.extend(source.runs_legend(Sample::Band, &panels));
     legends.push(ends(&stored));
     let sheet = Sheet {
         title: source.title_or(&format!("{} over time", plain.join(", "))),

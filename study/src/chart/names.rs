@@ -33,7 +33,7 @@ const MEASURES: &[(&str, &str)] = &[
     ("final_temperature", "final gas temperature"),
 ];
 
-/// Plain names of parameters; that of any other parameter is the last part of its path, in words.
+/// Plain names of parameters; that of any other parameter is its name in words, or its path.
 const PARAMETERS: &[(&str, &str)] = &[
     ("N", "number of panels"),
     ("M", "number of storeys"),
@@ -67,11 +67,12 @@ impl Name {
         })
     }
 
-    /// The name of a parameter, from its name or path.
+    /// The name of a parameter. A parameter whose last name others have too is known by its path, which stays.
     pub fn of_parameter(name: &str) -> Self {
-        let last = name.rsplit('.').next().unwrap_or(name);
-        Self::found(PARAMETERS, last)
-            .unwrap_or_else(|| Self { plain: last.replace('_', " "), symbol: String::new() })
+        Self::found(PARAMETERS, name).unwrap_or_else(|| {
+            let plain = if name.contains('.') { name.to_owned() } else { name.replace('_', " ") };
+            Self { plain, symbol: String::new() }
+        })
     }
 
     fn found(names: &[(&str, &str)], name: &str) -> Option<Self> {
@@ -103,11 +104,11 @@ impl Name {
     }
 }
 
-/// A text with a capital first letter; a symbol keeps its case.
+/// A text with a capital first letter; a symbol or path keeps its case.
 pub fn capital(text: &str) -> String {
     let mut letters = text.chars();
     match letters.next() {
-        Some(first) if !text.split(' ').next().is_some_and(|word| word.contains('_')) => {
+        Some(first) if !text.split(' ').next().is_some_and(|word| word.contains(['_', '.'])) => {
             format!("{}{}", first.to_uppercase(), letters.as_str())
         }
         _ => text.to_owned(),
@@ -137,7 +138,8 @@ mod tests {
             ),
             (quantity("new_one", &"long ".repeat(20)), &metre, "new_one (m)"),
             (Name::of_parameter("strategy"), &Unit::si("1"), "Inflation strategy"),
-            (Name::of_parameter("gas.mass_flow_rate"), &flow, "Mass flow rate (g/s)"),
+            (Name::of_parameter("mass_flow_rate"), &flow, "Mass flow rate (g/s)"),
+            (Name::of_parameter("strategies.a.mass"), &metre, "strategies.a.mass (m)"),
             (Name::of_parameter("N"), &Unit::si("1"), "Number of panels N"),
         ] {
             assert_eq!(name.label(unit), label);

@@ -84,7 +84,7 @@ pub fn svg(source: &Source<'_>, measure: &str, over: &str, by: &[String]) -> Res
         .collect();
     let mut legends = encoding.legends(positions.names);
     let range = if positions.names { Sample::Bar } else { Sample::Band };
-    legends.extend(source.runs_legend(range));
+    legends.extend(source.runs_legend(range, &panels));
     legends.extend(source.mesh_error_legend(measure));
     legends.push(drawing.outcomes.legend(false));
     legends.extend(bound.map(|bound| Legend {

@@ -7,6 +7,7 @@ use crate::analysis::compare::measured;
 use crate::analysis::replicates::{self, Condensed, Runs, is_mesh};
 use crate::input::value::Value;
 use crate::render::figure::legend::{Legend, Sample};
+use crate::render::figure::plot::{Line, Panel};
 use crate::store::table::{Column, Table};
 
 /// The runs behind the rows of a condensed table.
@@ -162,9 +163,14 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// The legend of medians and ranges, with this sample; `None` where each point has one run, or one on each mesh.
-    pub(super) fn runs_legend(&self, sample: Sample) -> Option<Legend> {
-        if !self.has_replicates() {
+    /// The legend of medians and ranges, with this sample; `None` where no panel has a range.
+    pub(super) fn runs_legend(&self, sample: Sample, panels: &[Panel]) -> Option<Legend> {
+        let mut lines = panels.iter().flat_map(|panel| &panel.lines);
+        let ranges = |line: &Line| {
+            let mut ranges = line.bands.iter().flatten().chain(&line.bars);
+            ranges.any(|[_, least, largest]| least < largest)
+        };
+        if !self.has_replicates() || !lines.any(ranges) {
             return None;
         }
         let entries = vec![(sample, "median, and range from least to largest".to_owned())];

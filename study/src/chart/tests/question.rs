@@ -202,6 +202,19 @@ fn the_history_of_a_point_is_the_median_of_its_runs() {
 }
 
 #[test]
+fn runs_without_a_range_have_no_legend() {
+    let mut table = table();
+    let speed = table.columns.iter_mut().find(|column| column.name == "peak_vz").unwrap();
+    for row in 0..24 {
+        speed.cells[row] = Value::Number(20.0);
+    }
+    let texts = check::figure(&condensed(&table, &[], |source| {
+        over::svg(source, "peak_vz", "mass_flow_rate", &[]).unwrap()
+    }));
+    assert!(!contains(&texts, "median, and range from least to largest"), "{texts:?}");
+}
+
+#[test]
 fn the_standard_charts_answer_the_question_of_the_study() {
     let (table, limits) = (table(), limits());
     let (names, notes) = condensed(&table, &limits, |source| {
