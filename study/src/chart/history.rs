@@ -18,7 +18,7 @@ use crate::input::value::Value;
 use crate::job::{JobId, Status};
 use crate::platform::error::Result;
 use crate::render::figure::legend::{Legend, Sample};
-use crate::render::figure::plot::{Axis, Line, Panel, Plots};
+use crate::render::figure::plot::{Axis, Line, Panel, Plots, Rule};
 use crate::render::figure::style::{Fill, Series};
 use crate::render::figure::unit::Unit;
 use crate::render::figure::{Sheet, columns as columns_of, scale, ticks};
@@ -64,7 +64,7 @@ pub fn svg(
     let time = TimeAxis::new(&histories.values().collect::<Vec<_>>(), range)?;
     let quantities: Vec<Quantity<'_>> = columns
         .iter()
-        .map(|symbol| Quantity::new(symbol, &histories, &time))
+        .map(|symbol| Quantity::new(symbol, source, &histories, &time))
         .collect::<Result<_>>()?;
 
     let (mut others, mut notes) = parameters::varying(source.table, &stored.rows, &[]);
@@ -94,12 +94,17 @@ pub fn svg(
         }
     }
     let plain: Vec<&str> = quantities.iter().map(|quantity| quantity.name.plain.as_str()).collect();
+    notes.extend(quantities.iter().flat_map(|quantity| quantity.notes.clone()));
     notes.extend(time.note.clone());
     notes.extend(not_drawn(source));
     notes.extend(source.runs_notes(None));
     let mut legends = encoding.legends(false);
     legends.extend(source.runs_legend(Sample::Band, &panels));
     legends.push(ends(&stored));
+    let limits = quantities.iter().flat_map(|quantity| &quantity.limits);
+    let mut limits: Vec<_> = limits.map(|rule| (Sample::End, rule.text.clone())).collect();
+    limits.dedup();
+    legends.push(Legend { heading: "Limit".to_owned(), entries: limits });
     let sheet = Sheet {
         title: source.title_or(&format!("{} over time", plain.join(", "))),
         subtitle: source.subtitle(),
@@ -177,13 +182,21 @@ struct Quantity<'a> {
     /// Ends of the y axis.
     range: [f64; 2],
     time: &'a TimeAxis,
+    /// The lines of limits, and notes on those that are far away.
+    limits: Vec<Rule>,
+    notes: Vec<String>,
     /// Whether lines are thin and few.
     thin: bool,
 }
 
 impl<'a> Quantity<'a> {
     /// A column of the history, or an extra quantity of a job.
-    fn new(symbol: &'a str, histories: &Histories<'_>, time: &'a TimeAxis) -> Result<Self> {
+    fn new(
+        symbol: &'a str,
+        source: &Source<'_>,
+        histories: &Histories<'_>,
+        time: &'a TimeAxis,
+    ) -> Result<Self> {
         let columns = || COLUMNS.iter().filter(|column| column.name != "time");
         let column = columns().find(|column| column.name == symbol);
         let label = || {
@@ -208,12 +221,20 @@ impl<'a> Quantity<'a> {
         let ends = inside.map(|value| [value; 2]);
         let ends = ends.reduce(|[low, high], [value, _]| [low.min(value), high.max(value)]);
         let unit = Unit::fit(si, ends.into_iter().flatten());
-        let range = ends.map_or([0.0, 1.0], |[low, high]| {
-            ticks::padded(unit.shown(low), unit.shown(high)).into()
+        let (mut limits, mut notes) = (Vec::new(), Vec::new());
+        let range = ends.map_or([0.0, 1.0], |ends| {
+            let mut ends = ends.map(|end| unit.shown(end));
+            for bound in source.bounds_of_history(symbol) {
+                let (extended, note) = bound.extended(ends, &unit);
+                limits.extend(note.is_none().then(|| bound.line(&unit)));
+                notes.extend(note);
+                ends = extended;
+            }
+            ticks::padded(ends[0], ends[1]).into()
         });
         let name = Name::of_quantity(symbol, meaning);
         // Velocities oscillate.
-        Ok(Self { symbol, name, unit, range, time, thin: si == "m/s" })
+        Ok(Self { symbol, name, unit, range, time, limits, notes, thin: si == "m/s" })
     }
 
     /// The panel of these rows.
@@ -248,6 +269,7 @@ impl<'a> Quantity<'a> {
         Panel {
             label: self.name.label(&self.unit),
             range: self.range,
+            rules: self.limits.clone(),
             lines,
             message: message.to_owned(),
             ..Panel::default()

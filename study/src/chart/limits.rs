@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use super::{Source, number};
 use crate::input::value::{Value, short_number};
 use crate::job::result_limit::{Condition, ResultLimit};
-use crate::job::row::DerivedColumn;
+use crate::job::row::{ColumnId, DerivedColumn};
 use crate::render::figure::plot::{Direction, Rule};
 use crate::render::figure::ticks::minus;
 use crate::render::figure::unit::Unit;
@@ -30,7 +30,34 @@ pub struct Bound {
     margin: bool,
 }
 
+/// Measures that are extremes of a history column of another name, and the signs with which a limit of them is one of
+/// the column.
+const SERIES: [(ColumnId, &str, &[f64]); 8] = [
+    (ColumnId::PeakVz, "vz", &[1.0]),
+    (ColumnId::PeakDownwardVz, "vz", &[-1.0]),
+    (ColumnId::PeakSpeed, "vz", &[1.0, -1.0]),
+    (ColumnId::PeakPressure, "pressure", &[1.0]),
+    (ColumnId::LargestZRim, "z_rim", &[1.0]),
+    (ColumnId::LowestZRim, "z_rim", &[1.0]),
+    (ColumnId::PeakKineticEnergy, "kinetic_energy", &[1.0]),
+    (ColumnId::PeakLidForce, "lid_force", &[1.0]),
+];
+
 impl<'a> Source<'a> {
+    /// The bounds of a history column.
+    pub(super) fn bounds_of_history(&self, column: &str) -> Vec<Bound> {
+        let bounds = self.limits.iter().flat_map(|limit| {
+            let known = SERIES.iter().find(|(id, name, _)| *id == limit.measure && *name == column);
+            let same: &[f64] = if limit.measure.name() == column { &[1.0] } else { &[] };
+            let signs = known.map_or(same, |(.., signs)| *signs);
+            signs.iter().filter_map(|sign| {
+                let bound = Bound::of(limit)?;
+                Some(Bound { value: sign * bound.value, ..bound })
+            })
+        });
+        bounds.collect()
+    }
+
     /// The bound of a measure; that of a margin is 0.
     pub(super) fn bound(&self, measure: &Column) -> Option<Bound> {
         let name = row_column_name(&measure.name);
@@ -44,9 +71,7 @@ impl<'a> Source<'a> {
             return Some(margin(Some(!strict), limit.to_string()));
         }
         let limit = self.limits.iter().find(|limit| limit.measure.name() == name)?;
-        let Condition::Bound { bound, above, or_equal } = limit.condition else { return None };
-        let (or_equal, text) = (Some(or_equal), limit.to_string());
-        Some(Bound { value: bound, above, or_equal, text, margin: false })
+        Bound::of(limit)
     }
 
     /// Whether a run of a row does not meet a limit.
@@ -69,6 +94,13 @@ impl<'a> Source<'a> {
 }
 
 impl Bound {
+    /// The bound of a limit of a number.
+    fn of(limit: &ResultLimit) -> Option<Self> {
+        let Condition::Bound { bound, above, or_equal } = limit.condition else { return None };
+        let (or_equal, text) = (Some(or_equal), limit.to_string());
+        Some(Self { value: bound, above, or_equal, text, margin: false })
+    }
+
     /// Whether a row with this value (SI) misses the limit.
     pub fn is_missed(&self, source: &Source<'_>, row: usize, value: f64) -> bool {
         match (value.partial_cmp(&self.value), self.or_equal) {
@@ -109,7 +141,12 @@ impl Bound {
         })
     }
 
-    /// The line of the limit.
+    /// The line of the limit in a history, of which a part may lie beyond it.
+    pub fn line(&self, unit: &Unit) -> Rule {
+        Rule { value: unit.shown(self.value), text: self.text.clone(), closed: None }
+    }
+
+    /// The line of the limit, with the side that misses it.
     pub fn rule(&self, unit: &Unit) -> Rule {
         let closed = if self.above { Direction::Down } else { Direction::Up };
         Rule { value: unit.shown(self.value), text: self.label(unit), closed: Some(closed) }

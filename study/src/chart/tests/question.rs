@@ -215,6 +215,28 @@ fn runs_without_a_range_have_no_legend() {
 }
 
 #[test]
+fn histories_have_lines_of_limits_of_both_signs() {
+    let bound = Condition::Bound { bound: 3.5, above: false, or_equal: false };
+    let limit = ResultLimit {
+        measure: ColumnId::PeakSpeed,
+        condition: bound,
+        text: "< 3.5 m/s".to_owned(),
+    };
+    let table = table();
+    let of = |columns: &str| {
+        let (limits, columns) = ([limit.clone()], [columns.to_owned()]);
+        let svg = condensed(&table, &limits, |source| {
+            history::svg(source, &columns, [None; 2], &read).unwrap()
+        });
+        let texts = check::figure(&svg);
+        texts.iter().filter(|text| *text == "peak_speed < 3.5 m/s").count()
+    };
+    // Two lines in at least one panel, and the legend.
+    assert!(of("vz") >= 3);
+    assert_eq!(of("pressure"), 0);
+}
+
+#[test]
 fn the_standard_charts_answer_the_question_of_the_study() {
     let (table, limits) = (table(), limits());
     let (names, notes) = condensed(&table, &limits, |source| {
