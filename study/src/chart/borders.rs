@@ -9,14 +9,15 @@ use super::encoding::{Encoding, PREFERRED_LINES};
 use super::names::{self, capital};
 use super::parameters::{self, Parameter};
 use super::positions::Positions;
+use super::tornado::OneFactor;
 use super::{Source, invalid_option, number};
 use crate::analysis::compare::canonical;
 use crate::analysis::replicates::Condensed;
-use crate::input::value::Value;
+use crate::input::value::{Value, brief_number};
 use crate::job::row::CellType;
 use crate::platform::error::Result;
 use crate::render::figure::legend::{Legend, Sample};
-use crate::render::figure::plot::{Direction, Line, Mark, Panel, Plots, Rule};
+use crate::render::figure::plot::{Axis, Direction, Line, Mark, Panel, Plots, Rule};
 use crate::render::figure::scale::Spread;
 use crate::render::figure::style::Fill;
 use crate::render::figure::unit::Unit;
@@ -75,7 +76,7 @@ pub fn svg(source: &Source<'_>, over: Option<&str>, by: &[String]) -> Result<Str
     let none = Column::plain("", CellType::Text, vec![Value::Text(String::new()); table.rows()]);
     let (varying, _) = parameters::varying(table, &points.rows, &[]);
     let one_factor = match over {
-        None if by.is_empty() => one_factor(&points, &varying),
+        None if by.is_empty() => one_factor(&points),
         _ => None,
     };
     let first = varying.iter().find(|parameter| parameter.is_number(&points.rows));
@@ -95,13 +96,15 @@ pub fn svg(source: &Source<'_>, over: Option<&str>, by: &[String]) -> Result<Str
     let encoding = Encoding::new(&points, &others, by, PREFERRED_LINES, positions.names, asked)?;
     let mut drawing =
         Drawing::new(source.parameter("--borders", search.parameter)?, search, &found);
-    let panels: Vec<Panel> = encoding
-        .panels
-        .panels
-        .iter()
+    let panels = encoding.panels.panels.iter();
+    let mut panels: Vec<Panel> = panels
         .map(|(title, rows)| drawing.panel(title, rows, &found, &encoding, &positions))
         .collect();
-    let mut legends = encoding.legends(positions.names);
+    let mut axis = positions.axis();
+    if let ([panel], true) = (&mut panels[..], varying.is_empty()) {
+        axis = drawing.number_line(panel);
+    }
+    let mut legends = encoding.legends(axis.names);
     legends.push(drawing.legend());
     let mut subtitle = points.subtitle();
     let count = |count: usize, one: &str, many: &str| {
@@ -121,7 +124,7 @@ pub fn svg(source: &Source<'_>, over: Option<&str>, by: &[String]) -> Result<Str
     let over = if x.name().is_empty() { "" } else { " over " };
     let title = format!("{}{over}{}", drawing.title(), x.plain().plain);
     let sheet = Sheet { title: source.title_or(&title), subtitle, legends, notes };
-    Ok(Plots { sheet, x: positions.axis(), across: columns(panels.len()), panels }.svg())
+    Ok(Plots { sheet, x: axis, across: columns(panels.len()), panels }.svg())
 }
 
 /// The border of each row: the search whose parameters it has.
@@ -153,44 +156,15 @@ fn of_rows<'b>(points: &Source<'_>, borders: &'b [Border]) -> Vec<Option<&'b Bor
 }
 
 /// Searches that change one factor at a time stand side by side under their names: the names as a parameter, and the
-/// base in words. `None` unless each search differs from the most frequent values in one parameter at most.
-fn one_factor(points: &Source<'_>, varying: &[Parameter<'_>]) -> Option<(Column, String)> {
-    if varying.len() < MIN_FACTORS {
-        return None;
-    }
-    let value = |parameter: &Parameter<'_>, row: usize| canonical(&parameter.column.cells[row]);
-    let base: Vec<String> = varying
-        .iter()
-        .map(|parameter| {
-            let mut counts: BTreeMap<String, (usize, std::cmp::Reverse<usize>)> = BTreeMap::new();
-            for row in &points.rows {
-                let first = (0, std::cmp::Reverse(*row));
-                counts.entry(value(parameter, *row)).or_insert(first).0 += 1;
-            }
-            // Of values that are equally frequent the first.
-            let most = counts.into_iter().max_by_key(|(_, count)| *count);
-            most.map_or_else(String::new, |(text, _)| text)
-        })
-        .collect();
-    let mut cells = vec![Value::Null; points.table.rows()];
-    let mut base_row = None;
-    for row in &points.rows {
-        let pairs = varying.iter().zip(&base);
-        let mut differing = pairs.filter(|(parameter, base)| value(parameter, *row) != **base);
-        let name = match (differing.next(), differing.next()) {
-            (None, _) => {
-                base_row = Some(*row);
-                "base".to_owned()
-            }
-            (Some((one, _)), None) => one.named(*row),
-            _ => return None,
-        };
-        cells[*row] = Value::Text(name);
-    }
-    let base_row = base_row?;
-    let values: Vec<String> = varying.iter().map(|parameter| parameter.named(base_row)).collect();
-    let base = format!("Base: {}", capital(&values.join(", ")));
-    Some((Column::plain("", CellType::Text, cells), base))
+/// base in words.
+fn one_factor(points: &Source<'_>) -> Option<(Column, String)> {
+    let one = OneFactor::of(points, MIN_FACTORS)?;
+    let name = |row| match one.of_rows.get(&row)? {
+        None => Some(Value::Text("base".to_owned())),
+        Some(factor) => Some(Value::Text(one.factors[*factor].named(row))),
+    };
+    let cells = (0..points.table.rows()).map(|row| name(row).unwrap_or(Value::Null));
+    Some((Column::plain("", CellType::Text, cells.collect()), one.base_text()))
 }
 
 /// The drawing of borders, and what its legend says.
@@ -304,6 +278,29 @@ impl<'d> Drawing<'d> {
             panel.rules.clear();
         }
         panel
+    }
+
+    /// Makes the panel of a single search a number line. Returns its axis.
+    fn number_line(&self, panel: &mut Panel) -> Axis {
+        let axis = Axis {
+            label: std::mem::take(&mut panel.label),
+            spread: std::mem::take(&mut panel.spread),
+            range: std::mem::replace(&mut panel.range, [-0.5, 0.5]),
+            ticks: Vec::new(),
+            names: false,
+        };
+        panel.names = vec![(0.0, String::new())];
+        for line in &mut panel.lines {
+            let text = |[_, low, high]: &[f64; 3]| {
+                let [low, high] = [*low, *high].map(brief_number);
+                format!("{low} to {}", self.unit.after(&high))
+            };
+            line.texts
+                .extend(line.bars.iter().zip(&line.marks).map(|(bar, mark)| (mark.0, text(bar))));
+            let end = [0.0, self.ends[0]];
+            line.texts.extend(panel.lane.drain(..).map(|mark| (end, mark.letter)));
+        }
+        axis
     }
 
     /// Adds a search to a line. Returns its letter, if it has neither a border nor an arrow.

@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 use super::history::{MAX_JOBS, has_history};
 use super::map::{Judged, MAX_VALUES};
 use super::parameters::{self, Parameter, STRATEGY};
+use super::tornado::{self, OneFactor};
 use super::{Source, borders, history, invalid_option, map, number, over};
 use crate::analysis::compare::{canonical, values};
 use crate::input::value::Value;
@@ -29,6 +30,8 @@ pub enum ChartKind {
     History(Vec<String>),
     /// A measure over a parameter; the parameters that give the lines.
     Over(String, String, Vec<String>),
+    /// How much each factor changes a measure, of points that vary one factor at a time.
+    Tornado(String),
     /// A measure over two parameters; `safe` and `verdict` are proportions of runs.
     Map(String, [String; 2]),
     /// The borders of a search over a parameter; the parameters that give the lines.
@@ -36,18 +39,17 @@ pub enum ChartKind {
 }
 
 impl ChartKind {
-    /// The map of a measure over two parameters; a proportion of runs without them over the first two.
+    /// The map of a measure over two parameters. Without them a proportion of runs is over the first two, any other
+    /// measure is a tornado.
     ///
     /// # Errors
-    /// A measure that needs axes, a study with fewer than two parameters that vary.
+    /// A study with fewer than two parameters that vary.
     pub fn map(source: &Source<'_>, measure: String, axes: Option<[String; 2]>) -> Result<Self> {
         if let Some(axes) = axes {
             return Ok(Self::Map(measure, axes));
         }
         if Judged::of_name(&measure).is_none() {
-            let problem = "needs a parameter to be drawn over";
-            let allowed = "--over PARAMETER, or --map X,Y";
-            return Err(invalid_option("--measure", &measure, problem, allowed, ""));
+            return Ok(Self::Tornado(measure));
         }
         let axes = outcome_axes(source).ok_or_else(|| {
             let problem = "a map needs two parameters that vary";
@@ -66,6 +68,7 @@ impl ChartKind {
         let name = match self {
             Self::History(columns) => format!("history-{}", columns.join("-")),
             Self::Over(measure, over, lines) => format!("{measure}-over-{over}{}", by(lines)),
+            Self::Tornado(measure) => format!("{measure}-tornado"),
             Self::Map(measure, [x, y]) => format!("{measure}-map-{x}-{y}"),
             Self::Borders(over, lines) => {
                 let over = over.as_ref().map(|over| format!("-over-{over}"));
@@ -88,6 +91,7 @@ impl ChartKind {
         match self {
             Self::History(columns) => history::svg(source, columns, range, read),
             Self::Over(measure, parameter, by) => over::svg(source, measure, parameter, by),
+            Self::Tornado(measure) => tornado::svg(source, measure),
             Self::Map(measure, [x, y]) => map::svg(source, measure, [x, y]),
             Self::Borders(over, by) => borders::svg(source, over.as_deref(), by),
         }
@@ -100,8 +104,8 @@ impl ChartKind {
             Self::History(_) => middle(source, &[]),
             Self::Over(_, over, _) => middle(source, &[over]),
             Self::Map(_, [x, y]) => middle(source, &[x, y]),
-            // The searches are chosen, not their values.
-            Self::Borders(..) => None,
+            // The searches are chosen, not their values; a tornado has every point.
+            Self::Borders(..) | Self::Tornado(_) => None,
         }
     }
 }
@@ -118,10 +122,11 @@ pub fn standard<'a>(source: &Source<'a>) -> (Vec<(ChartKind, Source<'a>)>, Vec<S
     let asks = source.runs.is_some() || source.search.is_some() || !source.limits.is_empty();
     let axes = axes(source);
     let judged = Judged::of(source);
+    let one_factor = source.search.is_none() && OneFactor::of(source, 2).is_some();
     // First the answer: the borders, or the map of outcomes.
     if source.search.is_some() {
         kinds.push(ChartKind::Borders(None, Vec::new()));
-    } else if asks {
+    } else if asks && !one_factor {
         match outcome_axes(source) {
             None => notes.push("no map of outcomes: it needs two parameters that vary".to_owned()),
             Some(axes) if source.rows.iter().any(|row| judged.proportion(source, *row).of > 0) => {
@@ -151,12 +156,16 @@ pub fn standard<'a>(source: &Source<'a>) -> (Vec<(ChartKind, Source<'a>)>, Vec<S
                 measures.join(", ")
             ));
         }
+        Some(_) if one_factor => kinds.extend(measured.iter().cloned().map(ChartKind::Tornado)),
         Some(over) => {
             let kind = |measure: &String| ChartKind::Over(measure.clone(), over.clone(), vec![]);
             kinds.extend(measured.iter().map(kind));
         }
     }
-    if !asks && let ([x, y, ..], Some(measure)) = (axes.as_slice(), measured.first()) {
+    if !asks
+        && !one_factor
+        && let ([x, y, ..], Some(measure)) = (axes.as_slice(), measured.first())
+    {
         kinds.push(ChartKind::Map(measure.clone(), [x.clone(), y.clone()]));
     }
     let mut charts: Vec<(ChartKind, Source<'a>)> =

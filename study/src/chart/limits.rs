@@ -6,6 +6,7 @@ use super::{Source, number};
 use crate::input::value::{Value, short_number};
 use crate::job::result_limit::{Condition, ResultLimit};
 use crate::job::row::{ColumnId, DerivedColumn};
+use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::plot::{Direction, Rule};
 use crate::render::figure::ticks::minus;
 use crate::render::figure::unit::Unit;
@@ -123,12 +124,18 @@ impl Bound {
     }
 
     /// Text of the legend.
-    pub fn legend(&self) -> String {
+    pub fn text(&self) -> String {
         if self.margin {
             format!("not safe; above 0: {}", self.text)
         } else {
             format!("misses the limit ({})", self.text)
         }
+    }
+
+    /// The legend of the side that misses it.
+    pub fn legend(&self) -> Legend {
+        let entries = vec![(Sample::Closed, self.text())];
+        Legend { heading: "Limit".to_owned(), entries }
     }
 
     /// A note on margins that are not distances.

@@ -292,7 +292,7 @@ impl<'s, 'a> Cells<'s, 'a> {
             && cells().any(|cell| cell.framed)
         {
             let framed = Cell { framed: true, ..Cell::default() };
-            legend.entries.push((Sample::Cell(framed), bound.legend()));
+            legend.entries.push((Sample::Cell(framed), bound.text()));
         }
         if cells().any(|cell| cell.ground == Ground::Absent) {
             let text = "no such point in the study".to_owned();

@@ -30,6 +30,7 @@ pub mod parameters;
 mod positions;
 pub mod runs;
 mod time_axis;
+mod tornado;
 pub mod work_precision;
 
 /// The rows of a chart.

@@ -3,12 +3,13 @@
 
 use super::Source;
 use super::encoding::{Encoding, PREFERRED_LINES};
+use super::limits::Bound;
 use super::names::{self, Name};
 use super::outcome::{self, Outcomes};
 use super::parameters::{self, Parameter};
 use super::positions::Positions;
 use crate::platform::error::Result;
-use crate::render::figure::legend::{Legend, Sample};
+use crate::render::figure::legend::Sample;
 use crate::render::figure::plot::{Line, Mark, Panel, Plots};
 use crate::render::figure::style::Series;
 use crate::render::figure::unit::Unit;
@@ -29,23 +30,8 @@ pub fn svg(source: &Source<'_>, measure: &str, over: &str, by: &[String]) -> Res
     let encoding =
         Encoding::new(source, &others, by, PREFERRED_LINES, positions.names, ("--over", over))?;
 
-    let of_row = |row: &usize| {
-        let ends = [source.range(measure, *row), source.mesh_error(measure, *row)];
-        let ends = ends.into_iter().flatten().flatten();
-        ends.chain(outcome::value(source, measure, *row)).collect::<Vec<f64>>()
-    };
-    let values: Vec<f64> = source.rows.iter().flat_map(of_row).collect();
-    let unit = parameters::shown_unit(measure, values.iter().copied());
-    let ends = values.iter().map(|value| [unit.shown(*value); 2]);
-    let ends = ends.reduce(|[low, high], [value, _]| [low.min(value), high.max(value)]);
-    let bound = source.bound(measure).filter(|_| ends.is_some());
-    let (ends, note) = match (ends, &bound) {
-        (Some(ends), Some(bound)) => bound.extended(ends, &unit),
-        (ends, _) => (ends.unwrap_or([0.0, 1.0]), None),
-    };
-    notes.extend(note);
-    notes.extend(bound.as_ref().and_then(|bound| bound.note(source)));
-    let (low, high) = if values.is_empty() { (0.0, 1.0) } else { ticks::padded(ends[0], ends[1]) };
+    let (unit, ends, bound) = extent(source, measure, &mut notes);
+    let (low, high) = ends.map_or((0.0, 1.0), |[low, high]| ticks::padded(low, high));
     if low > 0.0 {
         notes.push("The vertical axis does not start at zero.".to_owned());
     }
@@ -87,13 +73,35 @@ pub fn svg(source: &Source<'_>, measure: &str, over: &str, by: &[String]) -> Res
     legends.extend(source.runs_legend(range, &panels));
     legends.extend(source.mesh_error_legend(measure));
     legends.push(drawing.outcomes.legend(false));
-    legends.extend(bound.map(|bound| Legend {
-        heading: "Limit".to_owned(),
-        entries: vec![(Sample::Closed, bound.legend())],
-    }));
+    legends.extend(bound.map(|bound| bound.legend()));
     let title = source.title_or(&format!("{} over {}", name.plain, x.plain().plain));
     let sheet = Sheet { title, subtitle: source.subtitle(), legends, notes };
     Ok(Plots { sheet, x: positions.axis(), across: columns(panels.len()), panels }.svg())
+}
+
+/// The unit of a measure, the ends of its values in it, with their ranges, mesh errors and limit, and this limit. Adds
+/// the notes on the limit.
+pub(super) fn extent(
+    source: &Source<'_>,
+    measure: &Column,
+    notes: &mut Vec<String>,
+) -> (Unit, Option<[f64; 2]>, Option<Bound>) {
+    let of_row = |row: &usize| {
+        let ends = [source.range(measure, *row), source.mesh_error(measure, *row)];
+        let ends = ends.into_iter().flatten().flatten();
+        ends.chain(outcome::value(source, measure, *row)).collect::<Vec<f64>>()
+    };
+    let values: Vec<f64> = source.rows.iter().flat_map(of_row).collect();
+    let unit = parameters::shown_unit(measure, values.iter().copied());
+    let ends = values.iter().map(|value| [unit.shown(*value); 2]);
+    let ends = ends.reduce(|[low, high], [value, _]| [low.min(value), high.max(value)]);
+    let (Some(values), Some(bound)) = (ends, source.bound(measure)) else {
+        return (unit, ends, None);
+    };
+    let (ends, note) = bound.extended(values, &unit);
+    notes.extend(note);
+    notes.extend(bound.note(source));
+    (unit, Some(ends), Some(bound))
 }
 
 struct Drawing<'d, 'a> {

@@ -342,6 +342,56 @@ fn an_impossible_chart_is_an_error_that_says_what_is_allowed() {
 }
 
 #[test]
+fn points_that_vary_one_factor_at_a_time_are_a_tornado() {
+    let point_of = |(number, (panels, flow, strategy)): (usize, &(i64, f64, &str))| {
+        let parameters = [
+            ("N", Value::Integer(*panels)),
+            ("mass_flow_rate", Value::Number(*flow)),
+            ("strategy", Value::Text((*strategy).to_owned())),
+        ];
+        point(u32::try_from(number).unwrap(), &parameters)
+    };
+    let values = [
+        (6, 0.005, "direct"),
+        (6, 0.002, "direct"),
+        (6, 0.008, "direct"),
+        (5, 0.005, "direct"),
+        (6, 0.005, "rapid"),
+        (5, 0.002, "direct"),
+    ];
+    let points: Vec<Point> = values.iter().enumerate().map(point_of).collect();
+    let table = with_records(&points, |index, cells| match index {
+        4 => *cells = Cells::new(Status::Failed(FailureKind::StepLimit)),
+        _ => cells.set(ColumnId::PeakVz, [20.0, 15.0, 22.0, 21.0, 0.0, 9.0][index]),
+    });
+    let one_factor = Source { rows: (0..5).collect(), ..source(&table) };
+    let svg = tornado::svg(&one_factor, "peak_vz").unwrap();
+    let texts = check::figure(&svg);
+    shows(
+        &texts,
+        &[
+            "Peak upward ring velocity, one factor at a time",
+            "Base: N 6, mass flow rate 5 g/s, inflation strategy direct",
+            "Peak upward ring velocity peak_vz (m/s)",
+            "2 g/s −25 %",
+            "8 g/s +10 %",
+            "5 +5 %",
+            "rapid S",
+            "failed: step_limit (1)",
+        ],
+    );
+    // From the bottom to the top.
+    let names = ["Inflation strategy", "Number of panels N", "Mass flow rate", "Base"];
+    let places = names.map(|name| texts.iter().position(|text| text == name).unwrap());
+    assert!(places.is_sorted(), "{texts:?}");
+    let (charts, _) = kinds::standard(&one_factor);
+    let drawn: Vec<String> = charts.iter().map(|(kind, _)| kind.file_name()).collect();
+    assert_eq!(drawn[..2], ["peak_vz-tornado", "history-z_rim"]);
+    let error = tornado::svg(&source(&table), "peak_vz").unwrap_err().to_string();
+    assert!(error.contains("points that vary one factor at a time"), "{error}");
+}
+
+#[test]
 fn the_standard_charts_fit_the_study() {
     let table = mixed();
     let source = source(&table);

@@ -47,7 +47,7 @@ pub fn is_margin(name: &str) -> bool {
 }
 
 /// Whether a measure can be negative or zero, so that a ratio of two values means nothing.
-fn is_signed(measure: &str) -> bool {
+pub fn is_signed(measure: &str) -> bool {
     is_margin(measure) || ColumnId::from_name(measure).is_some_and(ColumnId::is_signed)
 }
 

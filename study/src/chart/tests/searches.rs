@@ -118,6 +118,22 @@ fn borders_are_intervals_arrows_and_letters_between_the_ends_of_the_search() {
 }
 
 #[test]
+fn a_single_search_is_a_number_line() {
+    let (svg, texts) = drawn(&borders()[..1], "safe");
+    let expected = ["Largest safe mass flow rate", "Mass flow rate (g/s)", "2 to 8 g/s", "5"];
+    shows(&texts, &expected);
+    // The column lies: its corners are farther apart along x than along y.
+    let column = svg.lines().find(|line| line.contains("fill-opacity=\"0.3\"")).unwrap();
+    let corners = column.split('"').nth(1).unwrap().split(' ');
+    let corners: Vec<Vec<f64>> =
+        corners.map(|c| c.split(',').map(|number| number.parse().unwrap()).collect()).collect();
+    let extent = |axis: usize| (corners[0][axis] - corners[2][axis]).abs();
+    assert!(extent(0) > extent(1), "{column}");
+    let (_, texts) = drawn(&borders()[2..3], "safe");
+    shows(&texts, &["M"]);
+}
+
+#[test]
 fn searches_that_change_one_factor_at_a_time_stand_under_their_names() {
     let with_thickness = |mut border: Border, thickness: f64| {
         border.parameters.push(("thickness".to_owned(), Value::Number(thickness)));
@@ -133,7 +149,7 @@ fn searches_that_change_one_factor_at_a_time_stand_under_their_names() {
     assert!(contains(&texts, "Largest safe mass flow rate"), "{texts:?}");
     shows(&texts, &["base", "inflation strategy rapid", "residual gas mass 0.1 g"]);
     assert!(
-        texts.iter().any(|text| text.starts_with("Base: Inflation strategy direct")),
+        texts.iter().any(|text| text.starts_with("Base: inflation strategy direct")),
         "{texts:?}"
     );
     // Two changes in one search: no names.

@@ -33,7 +33,8 @@ pub struct Args {
     /// per column.
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',', conflicts_with_all = ["measure"])]
     history: Vec<String>,
-    /// Draw this column of the table, over a parameter (--over) or two (--map). `safe` and `verdict` are the
+    /// Draw this column of the table, over a parameter (--over) or two (--map), or alone as a tornado: how much each factor
+    /// changes it, of points that vary one factor at a time. `safe` and `verdict` are the
     /// proportion of runs that are safe, or deployed, as a map; without --map over the first two parameters that
     /// vary.
     #[arg(long, value_name = "COLUMN", groups = ["with_over", "with_map"])]

@@ -19,6 +19,8 @@ pub struct Frame {
     pub x: Scale,
     /// From y to the page.
     pub y: Scale,
+    /// Whether points are given as y and x: position and value.
+    pub lying: bool,
     /// Ticks of the x axis.
     pub x_ticks: Vec<Tick>,
     /// Number of rows of letters in the lane below.
@@ -34,6 +36,16 @@ impl Frame {
 
     pub(super) fn bottom(&self) -> f64 {
         self.top + self.height
+    }
+
+    /// Where a value stands along its axis, mm.
+    pub(super) fn of_value(&self, value: f64) -> f64 {
+        if self.lying { self.x.position(value) } else { self.y.position(value) }
+    }
+
+    /// The position at a place on the axis of values, and at one across it.
+    pub(super) fn on_rule(&self, at: f64, along: f64) -> Position {
+        if self.lying { [at, along] } else { [along, at] }
     }
 
     pub(super) fn contains(&self, [x, y]: Position) -> bool {

@@ -74,6 +74,9 @@ impl Line {
 
     /// Position of a point on the page.
     pub(super) fn place(&self, frame: &Frame, [x, y]: [f64; 2]) -> Position {
+        if frame.lying {
+            return [frame.x.position(y), frame.y.position(x) + self.shift];
+        }
         [frame.x.position(x) + self.shift, frame.y.position(y)]
     }
 
@@ -84,10 +87,9 @@ impl Line {
     /// Draws bands and columns, which stand behind all lines.
     pub fn draw_bands(&self, page: &mut Page, frame: &Frame) {
         for column in &self.columns {
-            let [[x, low], [_, high]] = self.ends(frame, *column);
-            let (left, right) = (x - 0.5 * COLUMN, x + 0.5 * COLUMN);
-            let corners = [[left, low], [right, low], [right, high], [left, high]];
-            page.shade(&corners, self.series.colour, COLUMN_OPACITY);
+            let [[a, b], [c, d]] =
+                self.ends(frame, *column).map(|end| across(frame, end, 0.5 * COLUMN));
+            page.shade(&[a, b, d, c], self.series.colour, COLUMN_OPACITY);
         }
         for band in self.bands.iter().filter(|band| band.len() > 1) {
             let side = |end: usize| band.iter().map(move |point| self.ends(frame, *point)[end]);
@@ -120,8 +122,8 @@ impl Line {
             let [low, high] = self.ends(frame, *bar);
             let stroke = Stroke::solid(colour, width);
             page.line(low, high, &stroke);
-            for [x, y] in [low, high] {
-                page.line([x - cap, y], [x + cap, y], &stroke);
+            for [from, to] in [low, high].map(|end| across(frame, end, cap)) {
+                page.line(from, to, &stroke);
             }
         }
         for (point, fill) in &self.faint {
@@ -174,6 +176,12 @@ impl Line {
         }
         found
     }
+}
+
+/// The ends of a stroke of this half width (mm) across a bar.
+fn across(frame: &Frame, [x, y]: Position, half: f64) -> [Position; 2] {
+    let [dx, dy] = if frame.lying { [0.0, half] } else { [half, 0.0] };
+    [[x - dx, y - dy], [x + dx, y + dy]]
 }
 
 /// A line without points that make no visible difference: of the points in one bin of x only the first,

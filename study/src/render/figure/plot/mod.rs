@@ -60,6 +60,9 @@ pub struct Panel {
     pub range: [f64; 2],
     /// How the values of its y axis are spread; that of the first panel of a row applies to the row.
     pub spread: Spread,
+    /// Names at positions of its y axis, in the place of numbers: then values stand along x, rules are vertical, and bars
+    /// and columns lie. Points remain position and value.
+    pub names: Vec<Tick>,
     /// Horizontal lines across the plot, as those of limits.
     pub rules: Vec<Rule>,
     /// Lines, in drawing order.
@@ -83,6 +86,9 @@ pub struct Rule {
     pub closed: Option<Direction>,
 }
 
+/// Height of a name of the y axis, and its width at most, mm.
+const NAME_ROW: f64 = 8.0;
+const MAX_NAME: f64 = 45.0;
 /// Distance between plots side by side, mm.
 const GAP: f64 = 5.0;
 
@@ -132,6 +138,7 @@ impl Plots {
                     height: layout.height,
                     x: self.x_scale(left, layout.width),
                     y: Scale::new(panels[0].spread, panels[0].range, [bottom, y]),
+                    lying: panel.is_lying(),
                     x_ticks: self.x_ticks(layout.width),
                     lane_rows,
                     first: column == 0,
@@ -160,7 +167,9 @@ impl Plots {
     fn layout(&self) -> Layout {
         let across = self.across.max(1);
         let rows = self.panels.len().div_ceil(across);
+        let names = self.panels.iter().map(|panel| panel.names.len()).max().unwrap_or(0);
         let height = match (across, rows) {
+            _ if names > 0 => NAME_ROW * (names + 1) as f64,
             (1, 0 | 1) => 78.0,
             (1, 2) => 56.0,
             (1, 3) => 44.0,
@@ -169,7 +178,7 @@ impl Plots {
             _ => 40.0,
         };
         let first = || self.panels.iter().step_by(across);
-        let ticks = first().flat_map(|panel| y_ticks(panel.spread, panel.range, height));
+        let ticks = first().flat_map(|panel| panel.y_ticks(height));
         let mut gutter = widest(&ticks.map(|(_, text)| text).collect::<Vec<_>>());
         if self.panels.iter().any(|panel| !panel.lane.is_empty()) {
             gutter = gutter.max(font::width(lane::NAME, SMALL));
@@ -244,17 +253,26 @@ impl Plots {
 }
 
 impl Panel {
+    /// Whether values stand along x.
+    fn is_lying(&self) -> bool {
+        !self.names.is_empty()
+    }
+
+    /// Ticks of a y axis of this height, mm.
+    fn y_ticks(&self, height: f64) -> Vec<Tick> {
+        if self.is_lying() {
+            let name = |(at, name): &Tick| (*at, cut(name, SMALL, MAX_NAME));
+            return self.names.iter().map(name).collect();
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 11")]
+        let most = ((height / 7.0) as usize).clamp(3, 9);
+        ticks::of(self.spread, self.range, most)
+    }
+
     /// The lines of the label of a y axis of this height, mm.
     fn label_lines(&self, height: f64) -> Vec<String> {
         wrapped(&self.label, MEDIUM, height + 4.0)
     }
-}
-
-/// Ticks of a y axis of this height, mm.
-fn y_ticks(spread: Spread, range: [f64; 2], height: f64) -> Vec<Tick> {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 11")]
-    let most = ((height / 7.0) as usize).clamp(3, 9);
-    ticks::of(spread, range, most)
 }
 
 #[cfg(test)]

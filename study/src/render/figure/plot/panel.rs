@@ -2,7 +2,7 @@
 
 use super::frame::Frame;
 use super::words::Words;
-use super::{LABEL_LINE, Panel, Rule, TITLE_LINE, lane, y_ticks};
+use super::{LABEL_LINE, Panel, Rule, TITLE_LINE, lane};
 use crate::render::figure::plot::Direction;
 use crate::render::figure::scale::Spread;
 use crate::render::figure::style::{AXIS, GRID, MARGIN, MEDIUM, SMALL};
@@ -58,10 +58,10 @@ impl Panel {
     fn draw_grid(&self, page: &mut Page, frame: &Frame) {
         let (left, right) = (frame.left, frame.right());
         let (top, bottom) = (frame.top, frame.bottom());
-        for (value, text) in y_ticks(self.spread, self.range, frame.height) {
+        for (value, text) in self.y_ticks(frame.height) {
             let y = frame.y.position(value);
             page.line([left, y], [right, y], &GRID);
-            if frame.first {
+            if frame.first && !text.is_empty() {
                 page.line([left - 1.0, y], [left, y], &AXIS);
                 let position = [left - 1.6, y + 0.36 * SMALL];
                 page.text(position, &Letters::new(SMALL).at(Anchor::End), &text);
@@ -71,7 +71,8 @@ impl Panel {
             let x = frame.x.position(*value);
             page.line([x, top], [x, bottom], &GRID);
         }
-        if self.range[0] < 0.0 && self.range[1] > 0.0 && self.spread == Spread::Linear {
+        let both_signs = self.range[0] < 0.0 && self.range[1] > 0.0;
+        if both_signs && self.spread == Spread::Linear && !frame.lying {
             let y = frame.y.position(0.0);
             page.line([left, y], [right, y], &ZERO);
         }
@@ -100,35 +101,48 @@ impl Panel {
 impl Rule {
     /// Hatches the side that is not allowed.
     fn draw_closed_side(&self, page: &mut Page, frame: &Frame) {
-        let y = frame.y.position(self.value).clamp(frame.top, frame.bottom());
-        let (top, bottom) = match self.closed {
-            None => return,
-            Some(Direction::Up) => (frame.top, y),
-            Some(Direction::Down) => (y, frame.bottom()),
+        let Some(closed) = self.closed else { return };
+        let [mut left, mut right] = [frame.left, frame.right()];
+        let [mut top, mut bottom] = [frame.top, frame.bottom()];
+        let end = match (frame.lying, closed) {
+            (true, Direction::Up) => &mut left,
+            (true, Direction::Down) => &mut right,
+            (false, Direction::Up) => &mut bottom,
+            (false, Direction::Down) => &mut top,
         };
-        draw_closed(page, [frame.left, top], [frame.width, bottom - top], 2.6);
+        let at = frame.of_value(self.value);
+        *end = if frame.lying {
+            at.clamp(frame.left, frame.right())
+        } else {
+            at.clamp(frame.top, frame.bottom())
+        };
+        draw_closed(page, [left, top], [right - left, bottom - top], 2.6);
     }
 
     /// Draws the line, and its text where it covers the least.
     fn draw(&self, page: &mut Page, frame: &Frame, words: &mut Words) {
-        let y = frame.y.position(self.value);
-        if !(frame.top..=frame.bottom()).contains(&y) {
+        let [x, y] = [[frame.left, frame.right()], [frame.top, frame.bottom()]];
+        let ([low, high], [from, to]) = if frame.lying { (x, y) } else { (y, x) };
+        let at = frame.of_value(self.value);
+        if !(low..=high).contains(&at) {
             return;
         }
         let stroke = if self.closed.is_some() { &LIMIT } else { &END };
-        page.line([frame.left, y], [frame.right(), y], stroke);
+        page.line(frame.on_rule(at, from), frame.on_rule(at, to), stroke);
         let size = [font::width(&self.text, SMALL) + 1.0, 1.1 * SMALL];
-        let space = frame.width - size[0] - 1.2;
+        let (width, length) = if frame.lying { (size[0], size[1]) } else { (size[1], size[0]) };
+        let space = to - from - length - 1.2;
         if self.text.is_empty() || space < 0.0 {
             return;
         }
-        let lefts = [1.0, 0.0, 0.5, 0.75, 0.25].map(|part| frame.left + 0.6 + part * space);
+        let alongs = [1.0, 0.0, 0.5, 0.75, 0.25].map(|part| from + 0.6 + part * space);
         // The allowed side first: it is not hatched.
-        let mut tops = [y + 0.5, y - 0.5 - size[1]];
-        if self.closed == Some(Direction::Down) {
-            tops.reverse();
+        let mut sides = [at + 0.5, at - 0.5 - width];
+        if (self.closed == Some(Direction::Down)) != frame.lying {
+            sides.reverse();
         }
-        let corners = tops.iter().flat_map(|top| lefts.iter().map(move |left| [*left, *top]));
+        let corners =
+            sides.iter().flat_map(|side| alongs.iter().map(|along| frame.on_rule(*side, *along)));
         let corners: Vec<Position> = corners.collect();
         if let Some([left, top]) = words.best(&corners, size, MAX_COVERED) {
             page.fill([left, top], size, "#ffffff");

@@ -1,7 +1,7 @@
 //! Places of texts inside a plot: no text covers another one, and as little data as possible is covered.
 
 use super::frame::Frame;
-use super::{Line, Panel};
+use super::{Line, Panel, Rule};
 use crate::render::figure::style::SMALL;
 use crate::render::font;
 use crate::render::page::{Letters, Page, Position};
@@ -21,7 +21,7 @@ pub(super) struct Words {
     texts: Vec<Bounds>,
     /// Markers.
     markers: Vec<Position>,
-    /// Points of lines.
+    /// Points of lines and rules.
     points: Vec<Position>,
 }
 
@@ -38,11 +38,18 @@ impl Words {
             let points = bands.chain(faint).chain(arrows).map(|point| line.place(frame, point));
             points.chain(line.along(frame, frame.left, 1.0)).collect()
         };
+        let rule = |rule: &Rule| -> Vec<Position> {
+            let along = if frame.lying { frame.height } else { frame.width };
+            let start = if frame.lying { frame.top } else { frame.left };
+            let steps = (0..).map(f64::from).take_while(|step| *step < along);
+            steps.map(|step| frame.on_rule(frame.of_value(rule.value), start + step)).collect()
+        };
+        let lines = panel.lines.iter().flat_map(points);
         Self {
             frame: [frame.left, frame.top, frame.right(), frame.bottom()],
             texts: Vec::new(),
             markers: panel.lines.iter().flat_map(marks).collect(),
-            points: panel.lines.iter().flat_map(points).collect(),
+            points: lines.chain(panel.rules.iter().flat_map(rule)).collect(),
         }
     }
 
