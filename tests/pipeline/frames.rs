@@ -100,6 +100,11 @@ fn frames_of_a_job_are_stored_and_drawn() {
     folder.stdout(&[&["frames", path], arguments.as_slice()].concat());
     assert_eq!(panels(&folder.path().join("two.svg")), [elements; 2]);
     assert!(fs::read_to_string(folder.path().join("two.svg")).unwrap().contains("wrinkled"));
+    let smooth = ["frames", path, "--smooth", "--count", "2", "--out", "smooth.svg"];
+    folder.stdout(&smooth);
+    assert_eq!(panels(&folder.path().join("smooth.svg")), [elements; 2]);
+    let text = fs::read_to_string(folder.path().join("smooth.svg")).unwrap();
+    assert!(text.contains("fill=\"url(#light1_"), "no shading");
     let output = folder.run(&["frames", path, "--times", "3.9 ms,0.004,0", "--out", "a.PNG"]);
     assert!(stderr(&output).contains("1 of these 3 times"), "{}", stderr(&output));
     assert_eq!(png_size(&folder.path().join("a.PNG"))[0], 180 * 12);

@@ -129,7 +129,7 @@ impl<'a> Drawing<'a> {
     fn path(&mut self, positions: &[Vector2<f64>], end: &str) {
         let places = positions.iter().map(|position| self.place(*position));
         let places: Vec<String> = places.map(|[x, y]| format!("{x:.4},{y:.4}")).collect();
-        self.page.path("none", &format!("M{}{end}", places.join(" ")));
+        self.page.path("none", None, &format!("M{}{end}", places.join(" ")));
     }
 
     fn flaps(&mut self, width: f64) {

@@ -6,6 +6,8 @@
 //! page        (x·r, x·u),   depth x·e,   brightness |n·l|
 //! ```
 //!
+//! Smooth film has at each corner of an element the mean normal n of the elements there that are not behind a fold.
+//!
 //! Lengths across the line of sight have the same scale everywhere. Elements are drawn in the order of
 //! [`super::painter`]; both sides of the film are drawn.
 
@@ -16,6 +18,9 @@ use super::painter::{self, Triangle};
 
 /// Direction to the light in the basis (right, up, to the eye): upper left, on the side of the eye.
 const LIGHT: [f64; 3] = [-0.45, 0.55, 0.7];
+
+/// Smallest cosine of the angle between elements of smooth film; more is a fold. Chosen: 40°.
+const MIN_COSINE: f64 = 0.766;
 
 /// A line of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,8 +37,8 @@ pub struct Facet {
     pub element: usize,
     /// Corners, to the right and up, m.
     pub corners: [[f64; 2]; 3],
-    /// Brightness, 0 to 1.
-    pub light: f64,
+    /// Brightness at the corners, 0 to 1: equal ones unless the film is smooth.
+    pub lights: [f64; 3],
     /// Whether the outside is visible.
     pub outside: bool,
 }
@@ -57,21 +62,36 @@ impl View {
     }
 
     /// The elements of a shape in drawing order. Elements without an area are ignored.
-    pub fn facets(&self, triangles: &[[u32; 3]], frame: &Frame) -> Vec<Facet> {
+    pub fn facets(&self, triangles: &[[u32; 3]], frame: &Frame, smooth: bool) -> Vec<Facet> {
         let light = (LIGHT[0] * self.right + LIGHT[1] * self.up + LIGHT[2] * self.eye).normalize();
         let mut facets = Vec::with_capacity(triangles.len());
         let mut projected = Vec::with_capacity(triangles.len());
+        let position = |node: u32| Vector3::from(frame.positions[node as usize].map(f64::from));
+        let normal = |triangle: &[u32; 3]| {
+            let [a, b, c] = triangle.map(position);
+            (b - a).cross(&(c - a))
+        };
+        let mut around: Vec<Vec<Vector3<f64>>> = vec![Vec::new(); frame.positions.len()];
+        for triangle in triangles.iter().filter(|_| smooth) {
+            for node in triangle {
+                around[*node as usize].push(normal(triangle));
+            }
+        }
         for (element, triangle) in triangles.iter().enumerate() {
-            let nodes = triangle.map(|node| frame.positions[node as usize]);
-            let corners = nodes.map(|node| self.project(node));
-            let positions = nodes.map(|node| Vector3::from(node.map(f64::from)));
-            let [a, b, c] = positions;
-            let normal = (b - a).cross(&(c - a));
-            let area = normal.norm();
-            if area > 0.0 {
-                let light = (normal.dot(&light) / area).abs().min(1.0);
+            let corners = triangle.map(|node| self.project(frame.positions[node as usize]));
+            let positions = triangle.map(position);
+            let normal = normal(triangle);
+            if normal.norm() > 0.0 {
+                let is_near = |other: &&Vector3<f64>| {
+                    other.dot(&normal) > MIN_COSINE * other.norm() * normal.norm()
+                };
+                let lights = triangle.map(|node| {
+                    let others = around[node as usize].iter().filter(is_near);
+                    let mean = if smooth { others.sum() } else { normal };
+                    (mean.dot(&light) / mean.norm()).abs().min(1.0)
+                });
                 let outside = normal.dot(&self.eye) >= 0.0;
-                facets.push(Facet { element, corners, light, outside });
+                facets.push(Facet { element, corners, lights, outside });
                 let depths = positions.map(|position| position.dot(&self.eye));
                 projected.push(Triangle { corners, depths });
             }
@@ -125,11 +145,29 @@ mod tests {
         turned.swap(0, 1);
         let (triangles, frame) = separate(&[at(1.0), turned, at(-3.0), [[0.0; 3]; 3]]);
         let order = |view: View| -> Vec<(usize, bool)> {
-            let facets = view.facets(&triangles, &frame);
+            let facets = view.facets(&triangles, &frame, false);
             facets.iter().map(|facet| (facet.element, facet.outside)).collect()
         };
         assert_eq!(order(View::new(0.0, 0.3)), [(2, true), (0, true), (1, false)]);
         assert_eq!(order(View::new(PI, 0.3)), [(1, true), (0, false), (2, false)]);
+    }
+
+    #[test]
+    fn smooth_film_has_one_brightness_at_a_common_node_unless_there_is_a_fold() {
+        // Two elements at an edge along y; the second one rises with this slope.
+        let at_edge = |slope: f32| {
+            let nodes = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.5, 0.0], [1.0, 0.5, slope]];
+            let (_, frame) = separate(&[[nodes[0], nodes[1], nodes[2]], [nodes[3]; 3]]);
+            let facets = View::new(0.3, 0.2).facets(&[[0, 1, 2], [1, 0, 3]], &frame, true);
+            let lights =
+                |element| facets.iter().find(|facet| facet.element == element).unwrap().lights;
+            (lights(0), lights(1))
+        };
+        let (flat, other) = at_edge(0.5);
+        assert_eq!((flat[0], flat[1]), (other[1], other[0]));
+        assert!((flat[2] - flat[0]).abs() > 0.01 && (other[2] - other[0]).abs() > 0.01);
+        let (flat, other) = at_edge(2.0);
+        assert_eq!((flat, other), ([flat[0]; 3], [other[0]; 3]));
     }
 
     proptest! {
@@ -147,11 +185,13 @@ mod tests {
             let mut turned = corners;
             turned.swap(1, 2);
             let (triangles, shape) = separate(&[corners, turned]);
-            let facets = view.facets(&triangles, &shape);
+            let facets = view.facets(&triangles, &shape, true);
             prop_assert!(facets.len() == 2 || facets.is_empty());
             for facet in &facets {
-                prop_assert!((0.0..=1.0).contains(&facet.light));
-                prop_assert!((facet.light - facets[0].light).abs() < 1e-12);
+                for light in facet.lights {
+                    prop_assert!((0.0..=1.0).contains(&light));
+                    prop_assert!((light - facets[0].lights[0]).abs() < 1e-12);
+                }
                 prop_assert!(close(facet.corners[0], view.project(corners[0])));
             }
         }

@@ -50,6 +50,9 @@ pub struct Args {
     /// Meaning of the colours [default: storey; none for a mesh without storeys].
     #[arg(long, value_enum)]
     pub colour: Option<ColourArg>,
+    /// Shade smoothly between folds, and draw no lines of the mesh.
+    #[arg(long)]
+    pub smooth: bool,
     /// Title of the picture [default: study, job and parameters].
     #[arg(long, value_name = "TEXT")]
     pub title: Option<String>,
@@ -130,6 +133,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         frames: &frames,
         view,
         colour,
+        smooth: args.smooth,
         values: &values,
         notes: &notes,
     }

@@ -32,6 +32,9 @@ const VALUE_LINE: f64 = 1.35 * LETTER;
 /// Brightness of the inside of the film over that of its outside.
 const INSIDE_BRIGHTNESS: f64 = 0.72;
 
+/// Smallest change of brightness that a smooth element shows. Chosen: one step of its colour.
+const MIN_LIGHT_CHANGE: f64 = 1.0 / 256.0;
+
 /// Colours of storeys, repeated: neighbours differ in hue and brightness (Okabe and Ito).
 const STOREYS: [&str; 7] =
     ["#0072b2", "#e69f00", "#009e73", "#f0e442", "#d55e00", "#56b4e9", "#cc79a7"];
@@ -87,6 +90,8 @@ pub struct Filmstrip<'a> {
     pub view: View,
     /// Meaning of the colours.
     pub colour: Colour,
+    /// Whether the brightness is linear in each element and the mesh has no lines.
+    pub smooth: bool,
     /// Texts below each shape, one list of lines per frame: its time and sampled values.
     pub values: &'a [Vec<String>],
     /// Lines of text at the end of the picture.
@@ -151,18 +156,19 @@ impl Filmstrip<'_> {
 
     /// Draws one shape. The lines between elements are thinner if there are many elements.
     fn panel(&self, page: &mut Page, layout: &Layout, number: usize, frame: &Frame) {
-        let facets = self.view.facets(self.triangles, frame);
+        let facets = self.view.facets(self.triangles, frame, self.smooth);
         let line = (6.0 / (facets.len() as f64).sqrt()).clamp(0.03, 0.12);
         // Black edges are not visible on the dark end of viridis.
         let edge = if matches!(self.colour, Colour::Quantity(_)) { "#c0c0c0" } else { "#000000" };
+        let opacity = if self.smooth { 1.0 } else { 0.35 };
         page.open(
             &format!("frame{number}"),
             &format!(
-                "stroke=\"{edge}\" stroke-opacity=\"0.35\" stroke-width=\"{line:.3}\" \
+                "stroke=\"{edge}\" stroke-opacity=\"{opacity}\" stroke-width=\"{line:.3}\" \
                  stroke-linejoin=\"round\""
             ),
         );
-        for facet in &facets {
+        for (index, facet) in facets.iter().enumerate() {
             // Whole hundredths of a millimetre, relative to the previous corner: short, without
             // accumulated error.
             let corners =
@@ -177,8 +183,22 @@ impl Filmstrip<'_> {
                 short(c[0] - b[0]),
                 short(c[1] - b[1]),
             );
-            let [r, g, b] = self.fill(facet, number, frame);
-            page.path(&format!("#{r:02x}{g:02x}{b:02x}"), &d);
+            let colour = |light: f64| {
+                let [r, g, b] = self.fill(facet, light, number, frame);
+                format!("#{r:02x}{g:02x}{b:02x}")
+            };
+            if !self.smooth {
+                page.path(&colour(facet.lights[0]), None, &d);
+                continue;
+            }
+            let corners = facet.corners.map(|corner| layout.page(number, corner));
+            let name = format!("light{number}_{index}");
+            let fill = match gradient(corners, facet.lights) {
+                None => colour(facet.lights[0]),
+                Some((ends, lights)) => page.gradient(&name, ends, lights.map(colour)),
+            };
+            // A stroke of the same colour closes the gaps between elements.
+            page.path(&fill, Some(&fill), &d);
         }
         page.close();
     }
@@ -188,7 +208,7 @@ impl Filmstrip<'_> {
         clippy::cast_sign_loss,
         reason = "a colour between 0 and 255"
     )]
-    fn fill(&self, facet: &Facet, number: usize, frame: &Frame) -> [u8; 3] {
+    fn fill(&self, facet: &Facet, light: f64, number: usize, frame: &Frame) -> [u8; 3] {
         let (colour, dark) = match &self.colour {
             Colour::Plain => (rgb(PLAIN), 0.4),
             Colour::Storey => (rgb(self.storey_colour(self.storeys[facet.element])), 0.45),
@@ -205,7 +225,7 @@ impl Filmstrip<'_> {
         };
         let one_sided = !matches!(self.colour, Colour::Quantity(_)) && !facet.outside;
         let side = if one_sided { INSIDE_BRIGHTNESS } else { 1.0 };
-        let bright = side * (dark + (1.0 - dark) * facet.light);
+        let bright = side * (dark + (1.0 - dark) * light);
         colour.map(|part| (f64::from(part) * bright).round() as u8)
     }
 
@@ -252,6 +272,21 @@ impl Filmstrip<'_> {
         };
         Legend { heading: String::new(), entries: entries.into_iter().map(entry).collect() }
     }
+}
+
+/// Two positions and the brightness there, between which it is linear, from that at the corners of an element. `None`
+/// where it hardly varies.
+fn gradient(corners: [Position; 3], lights: [f64; 3]) -> Option<([Position; 2], [f64; 2])> {
+    let [u, v] = [1, 2].map(|k| [corners[k][0] - corners[0][0], corners[k][1] - corners[0][1]]);
+    let [a, b] = [lights[1] - lights[0], lights[2] - lights[0]];
+    let determinant = u[0] * v[1] - u[1] * v[0];
+    let slope = [(a * v[1] - b * u[1]) / determinant, (u[0] * b - v[0] * a) / determinant];
+    let square = slope[0] * slope[0] + slope[1] * slope[1];
+    let [low, high] = [f64::min, f64::max].map(|of| lights.into_iter().fold(lights[0], of));
+    let place =
+        |light: f64| [0, 1].map(|k| corners[0][k] + (light - lights[0]) * slope[k] / square);
+    (high - low > MIN_LIGHT_CHANGE && square.is_finite())
+        .then(|| ([place(low), place(high)], [low, high]))
 }
 
 /// The channels of a colour as `#0072b2`.

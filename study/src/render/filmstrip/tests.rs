@@ -42,6 +42,7 @@ fn strip<'a>(film: &'a (Vec<[u32; 3]>, Vec<u32>), frames: &'a [Frame]) -> Filmst
         frames,
         view: View::new(0.0, 0.0),
         colour: Colour::Storey,
+        smooth: false,
         values: &[],
         notes: &[],
     }
@@ -133,6 +134,24 @@ fn the_three_states_of_the_film_differ_in_grey() {
     assert!(0.75 * tones[0] > tones[1] && 0.75 * tones[1] > tones[2], "{tones:?}");
     let differ = |pair: &[&str]| (grey(pair[0]) - grey(pair[1])).abs() > 20.0;
     assert!(STOREYS.windows(2).all(differ), "neighbours differ in grey");
+}
+
+#[test]
+fn smooth_film_has_no_lines_and_a_linear_brightness() {
+    let film = elements();
+    // All sides of this box are folds, so each element has one brightness.
+    let box_shaped = [shape(0.0, 0.1)];
+    let strip = Filmstrip { smooth: true, ..strip(&film, &box_shaped) };
+    let text = strip.svg();
+    let svg = Document::parse(&text).unwrap();
+    let paths: Vec<_> = svg.descendants().filter(|node| node.has_tag_name("path")).collect();
+    assert_eq!(paths.len(), 18);
+    assert!(paths.iter().all(|path| path.attribute("stroke") == path.attribute("fill")));
+    assert!(!text.contains("linearGradient"));
+    let corners = [[1.0, 1.0], [3.0, 1.0], [1.0, 2.0]];
+    let (ends, lights) = gradient(corners, [0.2, 0.6, 0.2]).unwrap();
+    assert_eq!((ends, lights), ([[1.0, 1.0], [3.0, 1.0]], [0.2, 0.6]));
+    assert_eq!(gradient(corners, [0.2; 3]), None);
 }
 
 #[test]

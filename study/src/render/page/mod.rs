@@ -187,9 +187,22 @@ impl Page {
         let _ = writeln!(self.body, "<g opacity=\"{opacity}\">");
     }
 
-    /// A filled SVG path `d` with the stroke of its group.
-    pub fn path(&mut self, fill: &str, d: &str) {
-        self.add("path", &format!("fill=\"{fill}\" d=\"{d}\""));
+    /// A filled SVG path `d` with this stroke, or that of its group.
+    pub fn path(&mut self, fill: &str, stroke: Option<&str>, d: &str) {
+        let stroke = stroke.map_or_else(String::new, |stroke| format!("stroke=\"{stroke}\" "));
+        self.add("path", &format!("fill=\"{fill}\" {stroke}d=\"{d}\""));
+    }
+
+    /// A fill that changes linearly between two colours at two positions, by its name.
+    pub fn gradient(&mut self, name: &str, ends: [Position; 2], colours: [String; 2]) -> String {
+        let [[a, b], [c, d]] = ends.map(|end| end.map(mm));
+        let [from, to] = colours;
+        let _ = writeln!(
+            self.body,
+            "<linearGradient id=\"{name}\" gradientUnits=\"userSpaceOnUse\" x1=\"{a}\" y1=\"{b}\" x2=\"{c}\" \
+             y2=\"{d}\"><stop stop-color=\"{from}\"/><stop offset=\"1\" stop-color=\"{to}\"/></linearGradient>"
+        );
+        format!("url(#{name})")
     }
 
     /// Ends the group of [`Self::open`], [`Self::fade`] or [`Self::clip`].
