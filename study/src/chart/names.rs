@@ -19,7 +19,7 @@ const MEASURES: &[(&str, &str)] = &[
     ("peak_pressure", "peak gas pressure"),
     ("largest_z_rim", "largest height of the top ring"),
     ("lowest_z_rim", "lowest height after the first peak"),
-    ("t_peak_vz", "time of the peak velocity"),
+    ("t_peak_vz", "time of the peak upward velocity"),
     ("peak_kinetic_energy", "peak kinetic energy of the film"),
     ("overshoot", "overshoot of the height"),
     ("ringing_rms", "ringing velocity after deployment"),

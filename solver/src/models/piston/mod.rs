@@ -19,7 +19,7 @@
 //! has no contact, so nothing supports the stack from below; a capsule pressed below z = 0 stops as
 //! `inverted_volume`. Twist has no inertia. Film compression, contact, friction, adhesion, mesh
 //! subdivisions and the seed have no effect, so the same scene runs on every model. Compared with the
-//! film model on the paper's capsule (5 g/s from time 0), times are up to 25 % too early, the peak speed
+//! film model on the paper's capsule (5 g/s from time 0), times are up to 25 % too early, the peak upward velocity
 //! is 65-75 % too high and the peak kinetic energy 40-60 % too high: a single mass spends no energy on
 //! twist, radial motion and the loss in opening folds. Read both as upper bounds. A piston deploys
 //! whenever it has enough gas, so its verdict says nothing of locking.

@@ -196,10 +196,10 @@ columns! {
         "largest acceleration of the top ring, up or down: change of its mean speed from 5 ms to the next, over 5 ms"
         end => end.measure(|measures| measures.peak_acceleration);
     PeakVz "peak_vz" Number ["m/s"] Measures Smaller
-        "largest upward speed of the top ring: mean velocity of its nodes along z"
+        "largest upward velocity of the top ring: mean of its nodes along z"
         end => end.measure(|measures| measures.peak_vz);
     PeakDownwardVz "peak_downward_vz" Number ["m/s"] Measures Smaller
-        "largest downward speed of the top ring: minus the least mean velocity of its nodes along z"
+        "largest downward velocity of the top ring: minus the least mean of its nodes along z"
         end => end.measure(|measures| measures.peak_downward_vz);
     TPeakVz "t_peak_vz" Number ["s"] Measures Neither
         "time of peak_vz"
