@@ -266,7 +266,7 @@ fn a_generation_depends_only_on_the_finished_rows() {
             id: point.job.id.clone(),
             status: Status::Done,
             verdict: None,
-            met: Vec::new(),
+            limits: Vec::new(),
         })
         .collect();
     assert_eq!(next_jobs(&study, &finished[..2]), Some(all.clone()));

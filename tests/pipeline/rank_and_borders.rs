@@ -25,7 +25,7 @@ fn the_answer_counts_points_and_names_the_gentler_strategy() {
     let said = folder.stdout(&["run", "grid.json", "-q"]);
     assert!(said.contains("deployed all runs of 6 of 6 points deploy"), "{said}");
     assert!(said.contains("(peak_vz < 41 m/s, deployed)"), "{said}");
-    assert!(said.contains(" strategy: safe rapid 3 of 3 ("), "{said}");
+    assert!(said.contains(" strategy: safe rapid 0 of 3 ("), "{said}");
     assert!(said.contains("billow compare results/grid --rank"), "{said}");
     let answer = json_of(&folder, &["run", "grid.json", "-q"]);
     let rows = folder.rows("results/grid");
@@ -38,17 +38,17 @@ fn the_answer_counts_points_and_names_the_gentler_strategy() {
         };
         rows.iter().filter(of).collect::<Vec<_>>()
     };
-    let safe_runs = |strategy: &str, rate: f64| {
-        runs(strategy, rate).iter().filter(|row| row["safe"] == true).count()
+    // The error of the piston is not known: what meets the limits is within its uncertainty.
+    let met = |strategy: &str, rate: f64| {
+        runs(strategy, rate).iter().filter(|row| row["safety"] == "uncertain").count()
     };
     let points: Vec<usize> = ["rapid", "preinflate"]
         .iter()
-        .flat_map(|strategy| rates.map(|rate| safe_runs(strategy, rate)))
+        .flat_map(|strategy| rates.map(|rate| met(strategy, rate)))
         .collect();
     let safe = &answer["safe"];
     let number = |wanted: fn(usize) -> bool| points.iter().filter(|n| wanted(**n)).count();
-    assert_eq!(safe["safe"], number(|runs| runs == 4));
-    assert_eq!(safe["mixed"], number(|runs| 0 < runs && runs < 4));
+    assert_eq!((&safe["safe"], &safe["uncertain"]), (&json!(0), &json!(number(|runs| runs > 0))));
     assert!(number(|runs| runs == 4) > 0 && number(|runs| runs < 4) > 0, "{points:?}");
     assert_eq!(safe["missed"], json!({"peak_vz": number(|runs| runs < 4)}));
     let compared = answer["comparisons"].as_array().unwrap().iter();
@@ -64,14 +64,12 @@ fn the_answer_counts_points_and_names_the_gentler_strategy() {
     };
     for (index, row) in ranked.as_array().unwrap().iter().enumerate() {
         let strategy = row["strategy"].as_str().unwrap();
-        let of_rates = rates.map(|rate| safe_runs(strategy, rate));
         assert_eq!(row["rank"], index + 1);
         for name in ["rank", "safe", "smallest_margin", "peak_vz"] {
             assert_eq!(of_answer(row, name), row[name], "the answer is the same comparison");
         }
         assert_eq!((&row["points"], &row["safe_runs_of"]), (&json!(3), &json!(12)));
-        assert_eq!(row["safe_runs"], of_rates.iter().sum::<usize>());
-        assert_eq!(row["safe"], of_rates.iter().filter(|runs| **runs == 4).count());
+        assert_eq!((&row["safe_runs"], &row["safe"]), (&json!(0), &json!(0)));
         let margins = rows.iter().filter(|run| run["strategy"] == strategy);
         let worst = margins.filter_map(|run| run["smallest_margin"].as_f64());
         assert_eq!(row["smallest_margin"].as_f64(), worst.reduce(f64::min));
@@ -182,15 +180,19 @@ fn other_limits_judge_the_stored_runs() {
     };
     assert!(safe(&rows, 38.0) < safe(&rows, 41.0), "the limits differ in what they find safe");
     for row in judged.as_array().unwrap() {
-        assert_eq!(row["safe"], row["peak_vz"].as_f64().unwrap() < 38.0, "{row}");
+        let missed = row["peak_vz"].as_f64().unwrap() >= 38.0;
+        assert_eq!(row["safety"], if missed { "unsafe" } else { "uncertain" }, "{row}");
     }
-    let ranked = json_of(&folder, &[&["compare", "--rank", "grid.json"], &set[..]].concat());
-    let runs = ranked.as_array().unwrap().iter().map(|row| row["safe_runs"].as_u64().unwrap());
-    assert_eq!(usize::try_from(runs.sum::<u64>()), Ok(safe(&rows, 38.0)));
+    let margins = |of: &[&str]| {
+        let ranked = json_of(&folder, &[&["compare", "--rank"], of].concat());
+        let rows = ranked.as_array().unwrap().iter();
+        rows.filter_map(|row| row["smallest_margin"].as_f64()).fold(f64::INFINITY, f64::min)
+    };
+    let fastest = rows.iter().filter_map(|row| row["peak_vz"].as_f64()).fold(0.0, f64::max);
+    let near = |margin: f64, limit: f64| (margin - (limit - fastest) / limit).abs() < 1e-12;
+    assert!(near(margins(&["grid.json", "--set", "limits.peak_vz=< 38 m/s"]), 38.0));
     // A folder keeps the limits of its last run.
-    let kept = json_of(&folder, &["compare", "--rank", "results/grid"]);
-    let runs = kept.as_array().unwrap().iter().map(|row| row["safe_runs"].as_u64().unwrap());
-    assert_eq!(usize::try_from(runs.sum::<u64>()), Ok(safe(&rows, 41.0)));
+    assert!(near(margins(&["results/grid"]), 41.0));
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! Which methods keep an error, and what they cost.
 //!
 //! ```text
-//! cost of film on n subdivisions = (n/n_ref)³     element-steps: elements ∝ n², steps ∝ n
+//! cost of film on n subdivisions = (n/24)³     element-steps: elements ∝ n², steps ∝ n
 //! cost of an extrapolated value  = sum over its meshes
 //! ```
-//! The cost of a run on the finest mesh of the table is 1. No clock has a part in it.
+//! The cost of a run on 24 subdivisions is 1. No clock has a part in it.
 
 use std::collections::BTreeMap;
 
@@ -27,7 +27,7 @@ const STOREYS_COST: f64 = 1.5e-4;
 pub struct Choice {
     /// The method.
     pub method: Method,
-    /// Its cost over that of film on the finest mesh.
+    /// Its cost over that of film on 24 subdivisions.
     pub cost: f64,
     /// Relative error of each promised measure: the largest over some scenes.
     pub errors: [f64; PROMISED.len()],
@@ -43,7 +43,7 @@ impl Choice {
 
     /// The measures for which an accuracy is asked, and their errors.
     pub fn asked(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        let pairs = PROMISED.iter().zip(self.errors).filter(|(promised, _)| promised.is_asked());
+        let pairs = PROMISED.iter().zip(self.errors).filter(|(promised, _)| promised.is_asked);
         pairs.map(|(promised, error)| (promised.measure.name(), error))
     }
 
@@ -60,10 +60,10 @@ impl Choice {
     }
 }
 
-/// Cost of a method over that of film on the finest mesh.
-pub fn cost(table: &MeshErrors, method: &Method) -> f64 {
+/// Cost of a method over that of film on 24 subdivisions.
+pub fn cost(method: &Method) -> f64 {
     let of_mesh = |n: &u32| {
-        let ratio = f64::from(*n) / f64::from(table.reference);
+        let ratio = f64::from(*n) / 24.0;
         ratio * ratio * ratio
     };
     match method.model {
@@ -114,7 +114,7 @@ fn of_method(
             .fold(0.0, f64::max)
     };
     let errors = PROMISED.map(largest);
-    Choice { cost: cost(table, &method), errors, method, refusal: None }
+    Choice { cost: cost(&method), errors, method, refusal: None }
 }
 
 /// The methods of the table for these scenes, the cheapest first.
@@ -125,7 +125,8 @@ pub fn choices(table: &MeshErrors, scenes: &[(&Scene, Features)]) -> Result<Vec<
     let distinct = distinct(table, scenes)?;
     let refusals = [ModelKind::Piston, ModelKind::Storeys, ModelKind::Film]
         .map(|model| (model, scenes.iter().find_map(|(scene, _)| refusal(model, scene))));
-    let of_measure = |entry: &&Entry| entry.measure == PROMISED[0].measure.name();
+    let of_measure =
+        |entry: &&Entry| entry.assumed.is_empty() && entry.measure == PROMISED[0].measure.name();
     let methods = table.errors.iter().filter(of_measure);
     let methods = methods.map(|entry| Method { model: entry.model, meshes: entry.meshes.clone() });
     let mut choices: Vec<Choice> = methods

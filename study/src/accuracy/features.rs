@@ -1,12 +1,16 @@
 //! What the mesh error of a run may depend on, and whether the table of mesh errors covers a scene.
 //!
 //! ```text
-//! m_release = gas inside at the release of the lid
-//! m_burst   = ∫ max(ṁ − ṁ_last, 0) dt  from the release
-//! ṁ_last    = mass flow rate of the last interval with inflow
+//! t_g: m(t_g) R T t_g² = m_film H²       gas time: by then gas has lifted the film, if it were one mass
+//! m(t): gas inside t after the release, of an empty capsule after its first gas;  gas: m_g = m(t_g)
+//! wave time = r √(ρ/E);  m_film = ρ t π ((r + r₁) s + r² + r₁²),  s = √(H² + (r − r₁)²)
+//! burst = ∫ max(ṁ − ṁ_last, 0) dt from the release;  ṁ_last: the last mass flow rate above 0
 //! ```
+//! All features are pure numbers: capsules of any size with equal ones move alike, and have equal mesh errors.
 //! A scene is covered if its features lie within those of the runs that the table was made from, and all else in
 //! it is as in these runs.
+
+use std::f64::consts::PI;
 
 use billow_solver::geometry::fold::Fit;
 use billow_solver::integrators::dormand_prince::DEFAULT_TOLERANCE;
@@ -29,26 +33,27 @@ pub fn step(scene: &Scene) -> Stepping {
 }
 
 /// Number of features of a scene.
-pub const FEATURES: usize = 11;
+pub const FEATURES: usize = 12;
 
-/// Names and units of the features, in the order of [`Features::values`].
-pub const FEATURE_NAMES: [(&str, &str); FEATURES] = [
-    ("N", ""),
-    ("M", ""),
-    ("bottom_radius", " m"),
-    ("top_radius over bottom_radius", ""),
-    ("height over bottom_radius", ""),
-    ("mass_flow_rate", " kg/s"),
-    ("residual gas let in", " kg"),
-    ("gas inside at the release", " kg"),
-    ("time from release to inflow", " s"),
-    ("inflow_temperature", " K"),
-    ("duration of inflow, up to 0.2", " s"),
+/// Names of the features, in the order of [`Features::values`]; pure numbers.
+pub const FEATURE_NAMES: [&str; FEATURES] = [
+    "N",
+    "M",
+    "top_radius over bottom_radius",
+    "height over bottom_radius",
+    "stowed_height over bottom_radius",
+    "mass of film over gas",
+    "gas time over wave time",
+    "gas at the release over gas",
+    "burst over gas",
+    "time to inflow over gas time",
+    "duration of inflow over gas time",
+    "inflow_temperature over film.temperature",
 ];
 
-/// An inflow that lasts longer after the release is like one of this duration, s. Chosen: capsules of the table are
-/// nine tenths deployed by then, or gas flows until they are.
-const LONG_INFLOW: f64 = 0.2;
+/// An inflow that begins, or lasts, longer than these many gas times is like one of this length. Chosen: film is nearly
+/// at rest by then.
+const LONG: f64 = 3.0;
 
 /// Largest relative difference of equal features: rounding.
 const ROUNDING: f64 = 1e-9;
@@ -61,51 +66,76 @@ pub fn are_equal(a: f64, b: f64) -> bool {
 /// What the mesh error of a run may depend on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Features {
-    /// The numbers, in the order of [`FEATURE_NAMES`], SI.
+    /// The numbers, in the order of [`FEATURE_NAMES`].
     pub values: [f64; FEATURES],
 }
 
 impl Features {
     /// The features of a scene. `top_radius` and `height` (m) are those of its solved pattern.
     pub fn of(scene: &Scene, top_radius: f64, height: f64) -> Self {
-        let schedule = Schedule::new(&scene.gas.windows);
-        let release = scene.release_time;
-        let at_release = scene.gas.initial_mass + schedule.mass_until(release);
+        let (design, film, gas) = (&scene.design, &scene.film, &scene.gas);
+        let radius = design.bottom_radius;
+        let slant = libm::hypot(height, radius - top_radius);
+        let area = PI * ((radius + top_radius) * slant + radius * radius + top_radius * top_radius);
+        let film_mass = film.area_density() * area;
+        let schedule = Schedule::new(&gas.windows);
         let times = schedule.change_times();
         let intervals = || times.windows(2).map(|pair| [pair[0], pair[1]]);
         let rate = |[from, to]: [f64; 2]| schedule.between(from, to).mass_flow_rate;
+        let flows = |interval: &[f64; 2]| rate(*interval) > 0.0;
+        let release = scene.release_time;
+        let inside = |time: f64| gas.initial_mass + schedule.mass_until(time);
+        let first = intervals().filter(flows).find(|[_, to]| *to > release);
+        let inflow = first.map_or(release, |[from, _]| from.max(release));
+        // An empty capsule waits for its gas.
+        let start = if inside(release) > 0.0 { release } else { inflow };
+        let temperature = gas.windows.last().map_or(film.temperature, |window| window.temperature);
+        let square = film_mass * height * height / (gas.species.gas_constant * temperature);
+        let gas_time = time_of(square, |time| inside(start + time));
+        let gas_mass = square / (gas_time * gas_time);
         let last = intervals().map(rate).rfind(|rate| *rate > 0.0).unwrap_or(0.0);
         let burst = intervals().map(|[from, to]| {
             let length = (to - from.max(release)).max(0.0);
             (rate([from, to]) - last).max(0.0) * length
         });
         let burst: f64 = burst.sum();
-        let first = intervals().find(|[from, to]| *to > release && rate([*from, *to]) > 0.0);
-        let delay = first.map_or(0.0, |[from, _]| (from - release).max(0.0));
-        let windows = scene.gas.windows.iter();
-        let stop = windows.clone().map(|window| window.to).fold(release, f64::max);
+        let stop = intervals().filter(flows).map(|[_, to]| to).fold(inflow, f64::max);
         // Windows are cut at the end of the run.
         let stop = if stop >= scene.solver.end_time { f64::INFINITY } else { stop };
-        let temperature =
-            windows.map(|window| window.temperature).next_back().unwrap_or(scene.film.temperature);
-        let design = &scene.design;
-        let radius = design.bottom_radius;
+        let duration = if first.is_some() { stop - inflow } else { 0.0 };
+        let long = |time: f64| (time / gas_time).min(LONG);
         Self {
             values: [
                 f64::from(design.panels),
                 f64::from(design.storeys),
-                radius,
                 top_radius / radius,
                 height / radius,
-                last,
-                burst,
-                at_release,
-                delay,
-                temperature,
-                LONG_INFLOW.min(stop - release),
+                design.stowed_height / radius,
+                film_mass / gas_mass,
+                gas_time / (radius * (film.density / film.youngs_modulus).sqrt()),
+                inside(release) / gas_mass,
+                burst / gas_mass,
+                long(inflow - start),
+                long(duration),
+                temperature / film.temperature,
             ],
         }
     }
+}
+
+/// The time t with m(t) t² = `square` (kg s²); without gas a long one, s. m: mass inside, kg, which never falls.
+fn time_of(square: f64, mass: impl Fn(f64) -> f64) -> f64 {
+    let [mut least, mut most] = [-40.0, 20.0];
+    for _ in 0..64 {
+        let middle = 0.5 * (least + most);
+        let time = libm::exp(middle);
+        if mass(time) * time * time < square {
+            least = middle;
+        } else {
+            most = middle;
+        }
+    }
+    libm::exp(most)
 }
 
 /// The scenes that the table covers.
@@ -139,8 +169,10 @@ impl Coverage {
                 *range = [range[0].min(value), range[1].max(value)];
             }
         }
-        let named = FEATURE_NAMES.iter().zip(ranges).map(|((name, _), [least, largest])| {
-            FeatureRange { name: (*name).to_owned(), least, largest }
+        let named = FEATURE_NAMES.iter().zip(ranges).map(|(name, [least, largest])| FeatureRange {
+            name: (*name).to_owned(),
+            least,
+            largest,
         });
         Some(Self { ranges: named.collect(), scene: scene.clone() })
     }
@@ -155,17 +187,12 @@ impl Coverage {
                 return Some(difference);
             }
         }
-        let units = FEATURE_NAMES.iter().map(|(_, unit)| unit);
-        for ((range, value), unit) in self.ranges.iter().zip(features.values).zip(units) {
+        for (range, value) in self.ranges.iter().zip(features.values) {
             let width = ROUNDING * range.largest.abs();
             if value < range.least - width || value > range.largest + width {
                 let [value, least, largest] = [value, range.least, range.largest].map(short_number);
-                // The end of a name, "up to 0.2", says how a feature is counted.
-                let name = range.name.split(',').next().unwrap_or_default();
-                let runs = if least == largest { least } else { format!("{least} to {largest}") };
-                return Some(format!(
-                    "{name} {value}{unit}: the runs of the table have {runs}{unit}"
-                ));
+                let (name, runs) = (&range.name, format!("{least} to {largest}"));
+                return Some(format!("{name} {value}: the runs of the table have {runs}"));
             }
         }
         None
@@ -176,13 +203,11 @@ impl Coverage {
 fn without_features(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     let design = &mut scene.design;
-    let relative = |height: f64| height / design.bottom_radius;
-    let stowed = relative(design.stowed_height);
-    design.stowed_height = stowed;
     design.fit = Fit::Cone;
     design.panels = 0;
     design.storeys = 0;
     design.bottom_radius = 1.0;
+    design.stowed_height = 1.0;
     design.subdivisions = 0;
     for length in [
         &mut design.top_radius,
@@ -192,6 +217,9 @@ fn without_features(scene: &Scene) -> Scene {
     ] {
         *length = None;
     }
+    let film = &mut scene.film;
+    (film.youngs_modulus, film.density, film.thickness) = (1.0, 1.0, 1.0);
+    film.temperature = 1.0;
     scene.gas.windows.clear();
     scene.gas.initial_mass = 0.0;
     scene.release_time = 0.0;

@@ -1,7 +1,6 @@
 //! What is known about the error of a result: the table of mesh errors, and which scenes it covers.
 //!
-//! The table is made by `billow-checks converge --table` from the studies convergence and mesh-error, and is part of the
-//! program. It has entries of every model; rows carry those of film, `billow plan --accuracy` names them all. No clock and no
+//! The table is made by `billow-checks converge --table` from the study mesh-error, and is part of the program. It has entries of every model; rows carry those of film, `billow plan --accuracy` names them all. No clock and no
 //! machine has a part in it, so a choice that reads it is the same everywhere.
 
 pub mod choice;
@@ -9,16 +8,17 @@ pub mod coordinates;
 pub mod entry;
 pub mod features;
 pub mod promised;
-pub mod student;
+pub mod row;
 pub mod table;
 #[cfg(test)]
 mod tests;
 
 pub use choice::{Choice, choice, choices};
 pub use coordinates::Coordinates;
-pub use entry::{Entry, Limit, Method, RelativeError};
+pub use entry::{Entry, Method, RelativeError};
 pub use features::{Coverage, Features};
 pub use promised::{
     NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED, Promised, error_column, is_error_column,
 };
+pub use row::{NOT_DEPLOYED, RowErrors};
 pub use table::MeshErrors;

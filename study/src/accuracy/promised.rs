@@ -1,35 +1,48 @@
 //! The measures whose mesh error is promised, and the columns that hold it.
 
+use super::MeshErrors;
 use crate::job::row::ColumnId;
 
-/// A measure with a known mesh error.
+/// A measure with a known error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Promised {
     /// The measure.
     pub measure: ColumnId,
-    /// Name of the column of its error.
+    /// Name of the column of its mesh error.
     pub error_column: &'static str,
-    /// Whether the measure tends to a limit as the mesh is refined. The error of one that does not is its change
-    /// up to the finest mesh of the table.
-    pub has_limit: bool,
+    /// Name of the column of its change over the ranges of the assumed values.
+    pub assumed_column: &'static str,
+    /// Whether an accuracy that is asked for holds for it: the others scatter by more from seed to seed.
+    pub is_asked: bool,
 }
 
-const fn limit(measure: ColumnId, error_column: &'static str) -> Promised {
-    Promised { measure, error_column, has_limit: true }
+/// A promised measure: column, name, whether it is asked.
+macro_rules! promised {
+    ($id:ident, $name:literal, $is_asked:literal) => {
+        Promised {
+            measure: ColumnId::$id,
+            error_column: concat!($name, "_error"),
+            assumed_column: concat!($name, "_assumed"),
+            is_asked: $is_asked,
+        }
+    };
 }
 
-const fn change(measure: ColumnId, error_column: &'static str) -> Promised {
-    Promised { measure, error_column, has_limit: false }
-}
-
-/// The promised measures, in the order of their columns. A test compares them with the table of mesh errors.
-pub const PROMISED: [Promised; 6] = [
-    change(ColumnId::T50ZRim, "t_50_z_rim_change_to_n24"),
-    limit(ColumnId::T90ZRim, "t_90_z_rim_error"),
-    change(ColumnId::PeakVz, "peak_vz_change_to_n24"),
-    limit(ColumnId::PeakKineticEnergy, "peak_kinetic_energy_error"),
-    limit(ColumnId::FinalZRim, "final_z_rim_error"),
-    limit(ColumnId::FinalVolume, "final_volume_error"),
+/// The promised measures, in the order of their columns.
+pub const PROMISED: [Promised; 13] = [
+    promised!(T50ZRim, "t_50_z_rim", true),
+    promised!(T90ZRim, "t_90_z_rim", true),
+    promised!(TDeployed, "t_deployed", false),
+    promised!(PeakSpeed, "peak_speed", false),
+    promised!(PeakAcceleration, "peak_acceleration", false),
+    promised!(PeakVz, "peak_vz", false),
+    promised!(PeakDownwardVz, "peak_downward_vz", false),
+    promised!(PeakKineticEnergy, "peak_kinetic_energy", true),
+    promised!(LargestZRim, "largest_z_rim", false),
+    promised!(FinalZRim, "final_z_rim", true),
+    promised!(FinalVolume, "final_volume", true),
+    promised!(PeakPressure, "peak_pressure", false),
+    promised!(FilmStress99, "film_stress_99", false),
 ];
 
 /// Name of the column that says why a row has no mesh errors.
@@ -38,30 +51,22 @@ pub const NO_ERROR_REASON: &str = "no_error_reason";
 pub const NO_ERROR_REASON_MEANING: &str = "why the table of mesh errors has none for this row: what its scene has that the runs of the table have not, or a model other than film; values extrapolated from three meshes have an error all the same";
 
 impl Promised {
-    /// Whether an accuracy that is asked for holds for it: `peak_vz` scatters by more from seed to seed.
-    pub fn is_asked(&self) -> bool {
-        self.measure != ColumnId::PeakVz
-    }
-
     /// Whether it is the state at the end of a run: it has a mesh error only where the capsule is deployed.
     pub fn is_at_end(&self) -> bool {
         matches!(self.measure, ColumnId::FinalZRim | ColumnId::FinalVolume)
     }
 
-    /// Its meaning, one line.
-    pub fn meaning(&self) -> String {
+    /// Names and meanings of the columns of its mesh error and of its change with the assumed values.
+    pub fn columns(&self) -> [(&'static str, String); 2] {
         let measure = self.measure.name();
-        if self.has_limit {
-            format!(
-                "mesh error of {measure}: 9 of 10 runs are nearer to the limit of fine meshes; null where it is not known \
-                 (no_error_reason)"
-            )
-        } else {
-            format!(
-                "change of {measure} up to n 24: 9 of 10 runs change less; no limit of fine meshes is known, and null \
-                 where the change is not (no_error_reason)"
-            )
-        }
+        let finest = MeshErrors::shipped().reference;
+        let error = format!(
+            "mesh error of {measure}: 9 of 10 runs are nearer to the value on n {finest}; null where it is not known (no_error_reason)"
+        );
+        let assumed = format!(
+            "change of {measure} over the ranges of the assumed values: film.loss_factor 0.003 to 0.03, gas.heat_transfer 0.1 to 1 W/(m2 K); null where it is not known"
+        );
+        [(self.error_column, error), (self.assumed_column, assumed)]
     }
 }
 
@@ -80,7 +85,7 @@ pub fn error_column(measure: &str) -> Option<&'static str> {
     promise(measure).map(|promised| promised.error_column)
 }
 
-/// Whether a column holds mesh errors.
+/// Whether a column holds mesh errors, or changes with the assumed values.
 pub fn is_error_column(name: &str) -> bool {
-    PROMISED.iter().any(|promised| promised.error_column == name)
+    PROMISED.iter().any(|promised| [promised.error_column, promised.assumed_column].contains(&name))
 }

@@ -9,19 +9,18 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-use billow_solver::scene::ModelKind;
 use billow_solver::scene::Scene;
 use serde::{Deserialize, Serialize};
 
 use super::coordinates::Coordinates;
-use super::entry::{Entry, Limit, Method, RelativeError};
+use super::entry::{Entry, Method, RelativeError};
 use super::features::{Coverage, Features};
 use super::promised::Promised;
 
 /// Name of the format.
 pub const FORMAT: &str = "billow-mesh-errors";
 /// Version of the format that this program writes and reads.
-pub const VERSION: u64 = 2;
+pub const VERSION: u64 = 3;
 
 /// The table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -41,8 +40,6 @@ pub struct MeshErrors {
     pub coverage: Coverage,
     /// The coordinates of the biases.
     pub coordinates: Coordinates,
-    /// The limit of each measure.
-    pub limits: BTreeMap<String, Limit>,
     /// The errors.
     pub errors: Vec<Entry>,
 }
@@ -86,17 +83,16 @@ impl MeshErrors {
         promised: &Promised,
     ) -> Result<RelativeError, String> {
         let measure = promised.measure.name();
-        let limit = self.limits.get(measure).filter(|limit| limit.known && promised.has_limit);
-        let (values, coordinates) = (&features.values, &self.coordinates);
-        let of_entry = |entry: &Entry| entry.error(values, coordinates, limit);
-        let covers = |entry: &&Entry| entry.covers(values, coordinates);
-        if let Some(entry) = self.entry(method, measure).filter(covers) {
+        let of_entry = |entry: &Entry| entry.error(&features.values, &self.coordinates);
+        if let Some(entry) = self.entry(method, measure) {
             return Ok(of_entry(entry));
         }
-        let no_runs = || format!("{}: the table has no such runs of such scenes", method.name());
+        let no_runs = || format!("{}: the table has no such runs", method.name());
         let [n] = method.meshes[..] else { return Err(no_runs()) };
-        let of_model = |entry: &&Entry| entry.model == method.model && entry.measure == measure;
-        let known = self.errors.iter().filter(of_model).filter(covers);
+        let of_model = |entry: &&Entry| {
+            entry.model == method.model && entry.measure == measure && entry.assumed.is_empty()
+        };
+        let known = self.errors.iter().filter(of_model);
         let known = known.filter_map(|entry| match entry.meshes[..] {
             [mesh] => Some((mesh, entry)),
             _ => None,
@@ -115,29 +111,43 @@ impl MeshErrors {
                 of_itself: between(coarse.of_itself, fine.of_itself),
             });
         }
-        Err(match (known.first(), known.last()) {
-            (Some((first, _)), Some((last, _))) => {
-                format!("design.subdivisions {n}: for such scenes the table has {first} to {last}")
+        match (known.first(), below) {
+            // A finer mesh than those of the table keeps the error of its finest.
+            (_, Some((_, finest))) => Ok(of_entry(finest)),
+            (Some((first, _)), None) => {
+                Err(format!("design.subdivisions {n}: the table has {first} and finer meshes"))
             }
-            _ => no_runs(),
-        })
+            (None, None) => Err(no_runs()),
+        }
     }
 
-    /// Bias of film on a mesh against the finest mesh, for a scene that is covered; `None` where the table has no such
-    /// runs.
-    pub fn bias(&self, n: u32, measure: &str, features: &Features) -> Option<f64> {
-        if n == self.reference {
-            return Some(0.0);
+    /// Relative change of a measure over the range of each assumed value, for a scene that is covered: nine of ten
+    /// scenes change less. `None` where the table has no such runs.
+    ///
+    /// ```text
+    /// a² = Σ over the assumed values of (the largest change at its two ends)²
+    /// ```
+    pub fn assumed(&self, features: &Features, promised: &Promised) -> Option<f64> {
+        let is =
+            |entry: &&Entry| !entry.assumed.is_empty() && entry.measure == promised.measure.name();
+        let mut largest: BTreeMap<&str, f64> = BTreeMap::new();
+        for entry in self.errors.iter().filter(is) {
+            let key = entry.assumed.split(' ').next().unwrap_or_default();
+            let change = entry.error(&features.values, &self.coordinates).of_reference;
+            let known = largest.entry(key).or_insert(0.0);
+            *known = known.max(change);
         }
-        let entry = self.entry(&Method { model: ModelKind::Film, meshes: vec![n] }, measure)?;
-        let (values, coordinates) = (&features.values, &self.coordinates);
-        entry.covers(values, coordinates).then(|| entry.bias(values, coordinates))
+        let squares: f64 = largest.values().map(|change| change * change).sum();
+        (!largest.is_empty()).then(|| squares.sqrt())
     }
 
     /// The entry of a method, as it stands in the table.
     pub fn entry(&self, method: &Method, measure: &str) -> Option<&Entry> {
         let is = |entry: &&Entry| {
-            entry.model == method.model && entry.meshes == method.meshes && entry.measure == measure
+            entry.assumed.is_empty()
+                && entry.model == method.model
+                && entry.meshes == method.meshes
+                && entry.measure == measure
         };
         self.errors.iter().find(is)
     }

@@ -1,5 +1,6 @@
 //! Tables and limits of tests.
 
+use crate::accuracy::{NO_ERROR_REASON, error_column};
 use crate::input::value::Value;
 use crate::job::result_limit::{Condition, ResultLimit};
 use crate::job::row::{CellType, ColumnId};
@@ -55,4 +56,13 @@ pub fn limits(speed: f64) -> Vec<ResultLimit> {
     let limit = |measure, condition, text| ResultLimit { measure, condition, text };
     let (below, deployed) = (format!("< {speed} m/s"), "deployed".to_owned());
     vec![limit(ColumnId::PeakVz, bound, below), limit(ColumnId::Verdict, word, deployed)]
+}
+
+/// The table with this mesh error of a measure in every row, and no reason why others have none.
+pub fn with_error(mut table: Table, measure: &str, error: f64) -> Table {
+    let name = error_column(measure).unwrap();
+    let rows = table.rows();
+    table.columns.retain(|column| ![name, NO_ERROR_REASON].contains(&&*column.name));
+    table.columns.push(Column::plain(name, CellType::Number, vec![Value::Number(error); rows]));
+    table
 }

@@ -1,6 +1,7 @@
 //! What the rows of a study show: comparisons, statistics, the answer, the ranking.
 
 pub mod answer;
+pub mod at_limit;
 pub mod compare;
 pub mod ranking;
 pub mod replicates;

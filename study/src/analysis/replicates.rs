@@ -20,6 +20,7 @@ use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::proportion::Proportion;
+use crate::job::result_limit::Safety;
 use crate::job::row::{CellType, ColumnId, DerivedColumn, SAME_JOB_AS};
 use crate::store::table::{Column, Table, extrapolated};
 
@@ -48,6 +49,8 @@ pub struct Runs {
     pub deployed: Proportion,
     /// Of the runs that the limits can judge, those that are safe.
     pub safe: Proportion,
+    /// Number of these that are unsafe: the others are within their uncertainty.
+    pub not_safe: usize,
     /// Number of done runs.
     pub done: usize,
     /// Number of done runs that cannot be trusted.
@@ -100,9 +103,15 @@ impl Condensed {
         self.runs[point].all(|runs| runs.deployed)
     }
 
-    /// Whether all runs of a point are safe; `None` where that cannot be said.
-    pub fn is_safe(&self, point: usize) -> Option<bool> {
-        self.runs[point].all(|runs| runs.safe)
+    /// What the limits say of a point: safe or unsafe if all its runs are; `None` where that cannot be said.
+    pub fn safety(&self, point: usize) -> Option<Safety> {
+        let runs = &self.runs[point];
+        let all = runs.all(|runs| runs.safe)?;
+        Some(match (all, runs.not_safe) {
+            (true, _) => Safety::Safe,
+            (false, number) if number == runs.safe.of => Safety::Unsafe,
+            _ => Safety::Uncertain,
+        })
     }
 
     /// The points that have a job.
@@ -179,14 +188,12 @@ impl Runs {
         let pending = status(|status| status == Status::Pending);
         let infeasible = status(|status| status == Status::Infeasible);
         let verdicts = rows.iter().filter_map(|row| table.verdict(*row));
-        let safe = table.column(DerivedColumn::Safe.name());
-        let safe = rows.iter().filter_map(|row| match safe?.cells[*row] {
-            Value::Bool(safe) => Some(safe),
-            _ => None,
-        });
+        let judged: Vec<Safety> = rows.iter().filter_map(|row| table.safety(*row)).collect();
+        let count = |safety| judged.iter().filter(|one| **one == safety).count();
         Self {
             deployed: Proportion::count(verdicts.map(|verdict| verdict == Verdict::Deployed)),
-            safe: Proportion::count(safe),
+            safe: Proportion { met: count(Safety::Safe), of: judged.len() },
+            not_safe: count(Safety::Unsafe),
             done,
             not_trusted,
             measured,

@@ -307,10 +307,11 @@ impl<'d> Drawing<'d> {
     fn point(&mut self, line: &mut Line, x: f64, border: &Border) -> Option<String> {
         let criterion = self.search.criterion;
         for level in border.levels.iter().filter(|level| level.met.of > 0) {
-            let (order, fill, some, meet) = match level.met.met {
-                0 => (12, Fill::Open, "no run", "meets "),
-                _ if level.met.is_mixed() => (11, Fill::Half, "some runs", "meet "),
-                _ => (10, Fill::Filled, "each run", "meets "),
+            let (order, fill, some, meet) = match (level.met.met, level.uncertain) {
+                (0, 0) => (12, Fill::Open, "no run", "meets "),
+                (met, _) if met == level.met.of => (10, Fill::Filled, "each run", "meets "),
+                (_, 0) => (11, Fill::Half, "some runs", "meet "),
+                _ => (11, Fill::Half, "some runs perhaps", "meet "),
             };
             line.faint.push(([x, self.unit.shown(level.value)], fill));
             let meet = if is_word(criterion) { "" } else { meet };

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use super::{Source, number};
 use crate::input::value::{Value, short_number};
-use crate::job::result_limit::{Condition, ResultLimit};
+use crate::job::result_limit::{Condition, ResultLimit, Safety};
 use crate::job::row::{ColumnId, DerivedColumn};
 use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::plot::{Direction, Rule};
@@ -78,11 +78,7 @@ impl<'a> Source<'a> {
     /// Whether a run of a row does not meet a limit.
     pub(super) fn misses(&self, limit: &ResultLimit, row: usize) -> bool {
         let (table, rows) = self.judged_rows(row);
-        rows.iter().any(|row| {
-            let value = table.value(limit.measure, *row).unwrap_or(&Value::Null);
-            let judged = table.status(*row).and_then(|status| limit.judge(status, value));
-            judged.is_some_and(|judged| !judged.met)
-        })
+        rows.iter().any(|row| table.judge(limit, *row).is_some_and(|judged| !judged.met))
     }
 
     /// The table of the single runs, and the runs of a row.
@@ -116,7 +112,7 @@ impl Bound {
                 };
                 rows.iter().any(|row| {
                     number(cell(DerivedColumn::SmallestMargin, *row)) == Some(0.0)
-                        && *cell(DerivedColumn::Safe, *row) == Value::Bool(false)
+                        && table.safety(*row).is_some_and(|safety| safety != Safety::Safe)
                 })
             }
             (None, _) => true,

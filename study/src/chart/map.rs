@@ -8,9 +8,9 @@ use super::names::{self, Name};
 use super::outcome::{self, Outcomes};
 use super::parameters::{self, Parameter};
 use super::{Source, invalid_option};
-use crate::input::value::Value;
 use crate::job::proportion::Proportion;
-use crate::job::row::{ColumnId, DerivedColumn};
+use crate::job::result_limit::Safety;
+use crate::job::row::ColumnId;
 use crate::platform::error::Result;
 use crate::render::figure::Sheet;
 use crate::render::figure::legend::{Legend, Sample};
@@ -44,7 +44,7 @@ impl Judged {
     /// Name of its column.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Safe => DerivedColumn::Safe.name(),
+            Self::Safe => "safe",
             Self::Deployed => ColumnId::Verdict.name(),
         }
     }
@@ -57,7 +57,7 @@ impl Judged {
     /// Adjective of a run that is counted, and its meaning.
     fn words(self) -> [&'static str; 2] {
         match self {
-            Self::Safe => ["safe", "safe: every limit is met"],
+            Self::Safe => ["safe", "safe: every limit is met for certain"],
             Self::Deployed => ["deployed", "deployed: the verdict"],
         }
     }
@@ -67,11 +67,9 @@ impl Judged {
         if let Some(runs) = source.runs_of(row) {
             return if self == Self::Safe { runs.safe } else { runs.deployed };
         }
-        let cell = source.table.column(self.name()).map(|column| &column.cells[row]);
-        Proportion::count(match (self, cell) {
-            (Self::Safe, Some(Value::Bool(safe))) => Some(*safe),
-            (Self::Safe, _) => None,
-            (Self::Deployed, _) => {
+        Proportion::count(match self {
+            Self::Safe => source.table.safety(row).map(|safety| safety == Safety::Safe),
+            Self::Deployed => {
                 outcome::verdict(source, row).map(|verdict| verdict == Verdict::Deployed)
             }
         })
@@ -168,7 +166,7 @@ impl<'a> Quantity<'a> {
             let unit = parameters::shown_unit(column, values);
             return Ok(Self::Measure(column, unit, source.bound(column)));
         };
-        if source.table.column(measure).is_none() {
+        if judged == Judged::Safe && source.limits.is_empty() {
             let problem = "the study has no limits, so no run is safe or not";
             let hint = "give the study \"limits\", as in {\"peak_vz\": \"< 25 m/s\"}";
             return Err(invalid_option("--measure", measure, problem, "verdict", hint));
@@ -261,8 +259,7 @@ impl<'s, 'a> Cells<'s, 'a> {
             return format!("{}/{}{sign}", proportion.met, proportion.of);
         }
         let text = match (judged, proportion.met) {
-            (Judged::Safe, 0) => "not safe",
-            (Judged::Safe, _) => "safe",
+            (Judged::Safe, _) => self.source.table.safety(row).map_or("", Safety::name),
             (Judged::Deployed, _) => outcome::verdict(self.source, row).map_or("", Verdict::name),
         };
         text.to_owned()

@@ -1,8 +1,7 @@
 //! The runs behind the points of a chart, where replicates repeat a point: median, range, k of n.
 
 use super::{Source, names};
-use crate::accuracy::promised::promise;
-use crate::accuracy::{NO_ERROR_REASON, error_column};
+use crate::accuracy::{MeshErrors, NO_ERROR_REASON, error_column};
 use crate::analysis::compare::measured;
 use crate::analysis::replicates::{self, Condensed, Runs, is_mesh};
 use crate::input::value::Value;
@@ -58,11 +57,7 @@ impl<'a> Source<'a> {
     /// The legend of mesh errors; `None` where no row has one.
     pub(super) fn mesh_error_legend(&self, measure: &Column) -> Option<Legend> {
         let has_error = self.rows.iter().any(|row| self.mesh_error(measure, *row).is_some());
-        let meaning = if promise(&measure.name)?.has_limit {
-            "against the limit of fine meshes, 9 of 10 runs"
-        } else {
-            "change up to n 24, 9 of 10 runs"
-        };
+        let meaning = format!("against n {}, 9 of 10 runs", MeshErrors::shipped().reference);
         let outside = self.table.column(NO_ERROR_REASON).is_some_and(|reasons| {
             let has_error = |row: &&usize| self.mesh_error(measure, **row).is_some();
             self.rows.iter().filter(has_error).any(|row| reasons.cells[*row] != Value::Null)

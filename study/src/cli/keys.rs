@@ -167,7 +167,7 @@ fn has_word(text: &str, lower: &str) -> bool {
     }
 }
 
-/// The columns of the table, also those of mesh errors.
+/// The columns of the table, also those of errors.
 fn columns() -> Vec<KeyDescription> {
     let entry = |path: &str, unit, meaning| KeyDescription {
         path: path.to_owned(),
@@ -178,8 +178,9 @@ fn columns() -> Vec<KeyDescription> {
     };
     let of_row =
         COLUMNS.iter().map(|column| entry(column.name, column.unit, column.meaning.to_owned()));
-    let of_errors = PROMISED.iter().map(|promised| {
-        entry(promised.error_column, promised.measure.column().unit, promised.meaning())
+    let of_errors = PROMISED.iter().flat_map(|promised| {
+        let unit = promised.measure.column().unit;
+        promised.columns().map(|(name, meaning)| entry(name, unit, meaning))
     });
     of_row.chain(of_errors).collect()
 }

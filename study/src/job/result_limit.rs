@@ -4,9 +4,12 @@
 //! value < bound:   margin = (bound − value)/|bound|        bound 0: margin = −value  (SI)
 //! value > bound:   margin = (value − bound)/|bound|        bound 0: margin = value   (SI)
 //! word, true or false, or a time that was never reached:  margin = 1 met, −1 not met
-//! smallest margin = min over the limits;  safe: every limit is met
+//! smallest margin = min over the limits
+//! met for certain: margin > u,  missed for certain: −margin ≥ u      u: uncertainty of the value in the same measure
 //! ```
-//! A margin of 0.2 says that the value is a fifth of the bound away from it, on the safe side.
+//! A margin of 0.2 says that the value is a fifth of the bound away from it, on the safe side. Where u is not known, a
+//! limit is never met for certain. A row is safe if every limit is met for certain, unsafe if one is missed for certain,
+//! and within its uncertainty otherwise.
 
 use std::cmp::Ordering;
 use std::fmt;
@@ -48,10 +51,67 @@ pub enum Condition {
 /// What a limit says of one row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Judged {
-    /// Whether the limit is met.
+    /// Whether the value meets the limit, whatever its uncertainty.
     pub met: bool,
     /// The margin: positive where it is met.
     pub margin: f64,
+    /// Uncertainty of the margin; `None` where it is not known.
+    pub uncertainty: Option<f64>,
+}
+
+/// What is known of a limit, or of all limits together; the worst is the largest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Safety {
+    /// Met for certain.
+    Safe,
+    /// The uncertainty of the value reaches across the limit, or is not known.
+    Uncertain,
+    /// Missed for certain, or missed with an uncertainty that is not known.
+    Unsafe,
+}
+
+impl Safety {
+    /// All of them, the best first.
+    pub const ALL: [Self; 3] = [Self::Safe, Self::Uncertain, Self::Unsafe];
+
+    /// The word of a cell.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Safe => "safe",
+            Self::Uncertain => "uncertain",
+            Self::Unsafe => "unsafe",
+        }
+    }
+
+    /// That of a cell; `None` for another word.
+    pub fn of_cell(cell: &Value) -> Option<Self> {
+        let is = |safety: &Self| matches!(cell, Value::Text(text) if text == safety.name());
+        Self::ALL.into_iter().find(is)
+    }
+}
+
+impl From<Safety> for Value {
+    fn from(safety: Safety) -> Self {
+        Self::Text(safety.name().to_owned())
+    }
+}
+
+impl Judged {
+    /// What is known of the limit.
+    pub fn safety(&self) -> Safety {
+        match (self.met, self.uncertainty) {
+            // Words are met or not; a margin of 0 is that of a bound which is allowed.
+            (true, Some(u)) if u == 0.0 || self.margin > u => Safety::Safe,
+            (false, Some(u)) if -self.margin >= u => Safety::Unsafe,
+            (false, None) => Safety::Unsafe,
+            _ => Safety::Uncertain,
+        }
+    }
+
+    /// The same, with an uncertainty that is not known taken as none: what a search goes by.
+    pub fn as_far_as_known(&self) -> Safety {
+        Self { uncertainty: Some(self.uncertainty.unwrap_or(0.0)), ..*self }.safety()
+    }
 }
 
 impl ResultLimit {
@@ -69,15 +129,17 @@ impl ResultLimit {
         )
     }
 
-    /// Whether the limit is met, and by which margin. `value` gives the cell of a column. `None` unless
-    /// the job is done and has the measure. A time without a value was never reached: it is not met
-    /// below a bound.
-    pub fn judge(&self, status: Status, value: &Value) -> Option<Judged> {
+    /// Whether the limit is met, and by which margin. `uncertainty` is that of the value, SI; of a word 0, or infinite
+    /// where it may be another; `None` where it is not known. `None` unless the job is done and has the measure. A time
+    /// without a value was never reached: it is not met below a bound.
+    pub fn judge(&self, status: Status, value: &Value, uncertainty: Option<f64>) -> Option<Judged> {
         if status != Status::Done {
             return None;
         }
-        let without_number =
-            |met| Judged { met, margin: if met { WITHOUT_NUMBER } else { -WITHOUT_NUMBER } };
+        let without_number = |met| {
+            let margin = if met { WITHOUT_NUMBER } else { -WITHOUT_NUMBER };
+            Judged { met, margin, uncertainty }
+        };
         match (&self.condition, number(value)) {
             (Condition::Is(_), _) if *value == Value::Null => None,
             (Condition::Is(word), _) => Some(without_number(word == value)),
@@ -86,13 +148,14 @@ impl ResultLimit {
             }
             (Condition::Bound { bound, above, or_equal }, Some(number)) => {
                 let distance = if *above { number - bound } else { bound - number };
-                let margin = if *bound == 0.0 { distance } else { distance / bound.abs() };
+                let over = |number: f64| if *bound == 0.0 { number } else { number / bound.abs() };
+                let (margin, uncertainty) = (over(distance), uncertainty.map(over));
                 let met = match number.partial_cmp(bound)? {
                     Ordering::Less => !above,
                     Ordering::Equal => *or_equal,
                     Ordering::Greater => *above,
                 };
-                Some(Judged { met, margin })
+                Some(Judged { met, margin, uncertainty })
             }
         }
     }
@@ -118,44 +181,47 @@ impl fmt::Display for ResultLimit {
 
 /// All limits of a study together, for one row.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Safety {
-    /// Whether every limit is met.
-    pub safe: bool,
+pub struct AllJudged {
+    /// What is known of all of them.
+    pub safety: Safety,
     /// The smallest margin.
     pub smallest_margin: f64,
     /// The position of the limit that has it.
     pub limit: usize,
 }
 
-impl Safety {
-    /// The safety of a row; `value` gives the cell of a column. `None` without limits, for a job that is not
+impl AllJudged {
+    /// The safety of a row; `value` gives the cell of a column, `uncertainty` that of its value. `None` without limits, for a job that is not
     /// done, and where a measure has no value unless another limit is missed: nothing is known then.
     pub fn of<'v>(
         limits: &[ResultLimit],
         status: Status,
         value: impl Fn(ColumnId) -> &'v Value,
+        uncertainty: impl Fn(ColumnId) -> Option<f64>,
     ) -> Option<Self> {
-        let mut safety: Option<Self> = None;
+        let mut all: Option<Self> = None;
         let mut unknown = false;
         for (limit, result_limit) in limits.iter().enumerate() {
-            let judged = result_limit.judge(status, value(result_limit.measure));
-            let Some(Judged { met, margin }) = judged else {
+            let measure = result_limit.measure;
+            let judged = result_limit.judge(status, value(measure), uncertainty(measure));
+            let Some(judged) = judged else {
                 unknown = true;
                 continue;
             };
-            safety = Some(match safety {
-                None => Self { safe: met, smallest_margin: margin, limit },
+            let (safety, margin) = (judged.safety(), judged.margin);
+            all = Some(match all {
+                None => Self { safety, smallest_margin: margin, limit },
                 Some(known) => {
                     let smaller = margin < known.smallest_margin;
                     Self {
-                        safe: known.safe && met,
+                        safety: safety.max(known.safety),
                         smallest_margin: known.smallest_margin.min(margin),
                         limit: if smaller { limit } else { known.limit },
                     }
                 }
             });
         }
-        safety.filter(|known| !unknown || !known.safe)
+        all.filter(|known| !unknown || known.safety == Safety::Unsafe)
     }
 }
 
@@ -180,7 +246,7 @@ mod tests {
     #[test]
     fn margins_are_relative_distances_on_the_safe_side() {
         let judge = |limit: &ResultLimit, value| {
-            limit.judge(Status::Done, &value).map(|judged| (judged.met, judged.margin))
+            limit.judge(Status::Done, &value, Some(0.0)).map(|judged| (judged.met, judged.margin))
         };
         let speed = below(ColumnId::PeakVz, 25.0);
         assert_eq!(judge(&speed, Value::Number(20.0)), Some((true, 0.2)));
@@ -188,7 +254,7 @@ mod tests {
         assert_eq!(judge(&speed, Value::Number(25.0)), Some((false, 0.0)), "not below");
         assert_eq!(judge(&speed, Value::Null), None);
         assert_eq!(judge(&speed, Value::Number(f64::NAN)), None);
-        assert_eq!(speed.judge(Status::Panicked, &Value::Number(1.0)), None);
+        assert_eq!(speed.judge(Status::Panicked, &Value::Number(1.0), None), None);
         // A time that is never reached is later than any bound.
         assert_eq!(judge(&below(ColumnId::TDeployed, 1.0), Value::Null), Some((false, -1.0)));
         // A height below zero.
@@ -215,18 +281,29 @@ mod tests {
         let word = Condition::Is(Value::Text("deployed".to_owned()));
         let verdict = ResultLimit { condition: word, ..below(ColumnId::Verdict, 0.0) };
         let limits = [below(ColumnId::PeakVz, 25.0), verdict];
-        let safety = |speed: Value, verdict: &str| {
+        let safety = |speed: Value, verdict: &str, u: Option<f64>| {
             let verdict = Value::Text(verdict.to_owned());
-            Safety::of(&limits, Status::Done, |column| {
-                if column == ColumnId::PeakVz { &speed } else { &verdict }
-            })
+            let value = |column| if column == ColumnId::PeakVz { &speed } else { &verdict };
+            AllJudged::of(&limits, Status::Done, value, |_| u)
         };
-        let safe = safety(Value::Number(20.0), "deployed").unwrap();
-        assert_eq!(safe, Safety { safe: true, smallest_margin: 0.2, limit: 0 });
-        let stalled = safety(Value::Number(20.0), "stalled").unwrap();
-        assert_eq!(stalled, Safety { safe: false, smallest_margin: -1.0, limit: 1 });
-        assert_eq!(safety(Value::Null, "deployed"), None);
-        assert!(!safety(Value::Null, "stalled").unwrap().safe, "one limit is missed for certain");
-        assert_eq!(Safety::of(&[], Status::Done, |_| &Value::Null), None);
+        let of = |speed: f64, u| safety(Value::Number(speed), "deployed", u).unwrap().safety;
+        let safe = safety(Value::Number(20.0), "deployed", Some(0.0)).unwrap();
+        let expected = AllJudged { safety: Safety::Safe, smallest_margin: 0.2, limit: 0 };
+        assert_eq!(safe, expected);
+        let stalled = safety(Value::Number(20.0), "stalled", Some(0.0)).unwrap();
+        let expected = AllJudged { safety: Safety::Unsafe, smallest_margin: -1.0, limit: 1 };
+        assert_eq!(stalled, expected);
+        assert_eq!(safety(Value::Null, "deployed", Some(0.0)), None);
+        let missed = safety(Value::Null, "stalled", Some(0.0)).unwrap();
+        assert_eq!(missed.safety, Safety::Unsafe, "one limit is missed for certain");
+        assert_eq!(AllJudged::of(&[], Status::Done, |_| &Value::Null, |_| None), None);
+        // An uncertainty of half a metre a second of the speed, and none of the verdict.
+        let speed = |number: f64| {
+            limits[0].judge(Status::Done, &Value::Number(number), Some(0.5)).unwrap().safety()
+        };
+        let found = [24.4, 24.6, 25.4, 25.6].map(speed);
+        let uncertain = Safety::Uncertain;
+        assert_eq!(found, [Safety::Safe, uncertain, uncertain, Safety::Unsafe]);
+        assert_eq!([of(1.0, None), of(30.0, None)], [uncertain, Safety::Unsafe], "not known");
     }
 }

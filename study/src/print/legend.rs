@@ -3,11 +3,10 @@
 
 use std::fmt::Write as _;
 
-use crate::accuracy::{NO_ERROR_REASON, PROMISED};
+use crate::accuracy::{MeshErrors, NO_ERROR_REASON, NOT_DEPLOYED};
 use crate::analysis::replicates::is_mesh;
 use crate::input::value::Value;
 use crate::print::count;
-use crate::store::table::NOT_DEPLOYED;
 use crate::store::table::Table;
 
 /// What a row of points holds: runs that differ in `replicates`, on the meshes of the study (coarsest first; none where
@@ -29,9 +28,8 @@ pub fn points(
         let [others @ .., next] = coarser else { return text };
         let _ = write!(
             text,
-            "; {} are extrapolated from n {next} and {finest} (that of n {finest} where n {next} has none), all else is \
-             that of n {finest}",
-            estimated_names(),
+            "; the measures with ± and the times since the release are extrapolated from n {next} and {finest} (that of \
+             n {finest} where n {next} has none), all else is that of n {finest}"
         );
         for coarsest in others {
             let _ = write!(text, "; n {coarsest} shows how far the extrapolation changes");
@@ -40,43 +38,31 @@ pub fn points(
     text
 }
 
+/// What gives an error where the table of mesh errors has none.
+pub const THREE_MESHES: &str = "\"solver\": {\"meshes\": [4, 6, 8]} gives one";
+
 /// What the mesh errors that are `shown` are, and where they come from outside the table of mesh errors: of values that
 /// are extrapolated from several meshes.
 pub fn mesh_errors(shown: bool, table: &Table, meshes: &[u32]) -> Vec<String> {
     let mut notes = Vec::new();
     if shown {
+        let finest = MeshErrors::shipped().reference;
         notes.push(format!(
-            "±: mesh error, which 9 of 10 runs of the table of mesh errors keep: to the limit of fine meshes; of {} to \
-             n 24 only",
-            names(|has_limit| !has_limit)
+            "±: mesh error, which 9 of 10 runs of the table of mesh errors keep: to the value on n {finest}"
         ));
     }
-    let outside = || {
-        let reasons = table.column(NO_ERROR_REASON);
-        let is_gap = |cell: &Value| matches!(cell, Value::Text(text) if text != NOT_DEPLOYED);
-        reasons.is_some_and(|reasons| reasons.cells.iter().any(is_gap))
-    };
-    if !meshes.is_empty() && outside() {
-        notes.push(
-            if meshes.len() > 2 {
-                "rows that the table does not cover (no_error_reason): ± is 3 times the change of the extrapolated value \
-                 from the two coarsest meshes to the two finest, or the error of the paper's capsule where that is larger"
-            } else {
-                "rows that the table does not cover (no_error_reason) have no ±: solver.meshes with three meshes gives one"
-            }
+    let reasons = table.column(NO_ERROR_REASON).into_iter().flat_map(|column| column.cells.iter());
+    let mut gaps = reasons.filter_map(|cell| match cell {
+        Value::Text(text) if text != NOT_DEPLOYED => Some(text),
+        _ => None,
+    });
+    let Some(gap) = gaps.next() else { return notes };
+    notes.push(match meshes.len() {
+        0 => format!("rows without ± have no known error (no_error_reason): {gap}; {THREE_MESHES}"),
+        2 => format!("rows that the table does not cover (no_error_reason) have no ±; {THREE_MESHES}"),
+        _ => "rows that the table does not cover (no_error_reason): ± is 3 times the change of the extrapolated value \
+              from the two coarsest meshes to the two finest, or the error in the middle of the table where that is larger"
             .to_owned(),
-        );
-    }
+    });
     notes
-}
-
-/// The measures that are extrapolated or corrected.
-fn estimated_names() -> String {
-    format!("{} and the times since the release", names(|_| true))
-}
-
-/// The promised measures with and without a limit of fine meshes, by their names.
-fn names(of: fn(bool) -> bool) -> String {
-    let chosen = PROMISED.iter().filter(|promised| of(promised.has_limit));
-    chosen.map(|promised| promised.measure.name()).collect::<Vec<_>>().join(", ")
 }

@@ -15,6 +15,7 @@ use crate::store::table::{Column, Table};
 use crate::study::Study;
 
 pub mod answer;
+pub mod at_limit;
 pub mod legend;
 pub mod notes;
 pub mod points;

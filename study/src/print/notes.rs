@@ -4,9 +4,10 @@
 use std::collections::BTreeSet;
 
 use billow_solver::integrators::{self, Refusal};
-use billow_solver::scene::{Film, ModelKind};
+use billow_solver::scene::{Film, ModelKind, Scene};
 
-use crate::accuracy::{MeshErrors, Method, choice};
+use super::legend::THREE_MESHES;
+use crate::accuracy::{Features, MeshErrors, Method, choice};
 use crate::input::keys::numerical::{MESH_PARAMETER, SEED};
 use crate::input::keys::{MODELS, Model};
 use crate::input::value::{Value, brief_number};
@@ -37,6 +38,7 @@ fn of_points(study: &Study) -> Vec<String> {
     let has = |model| study.points().iter().any(|point| point.job.scene.solver.model == model);
     let mut lines: Vec<String> = Vec::new();
     lines.extend(of_meshes(study));
+    lines.extend(without_error(study));
     let subdivisions = study.key(MESH_PARAMETER).filter(|_| !study.meshes().is_empty());
     if let Some(given) = subdivisions.filter(|key| key.value != key.key.default_value()) {
         lines.push(format!("note: solver.meshes replaces design.subdivisions {}", given.value));
@@ -121,6 +123,27 @@ fn of_meshes(study: &Study) -> Option<String> {
         }
         Err(gap) => format!("note: the table of mesh errors does not cover every point ({gap})"),
     })
+}
+
+/// Why points of one mesh have no known error, and what follows; `None` where all have one.
+fn without_error(study: &Study) -> Option<String> {
+    let table = MeshErrors::shipped();
+    let gap = |(scene, features): (&Scene, Features)| {
+        let method = Method::of(scene);
+        match method.model {
+            ModelKind::Film => table.gap(scene, &features),
+            _ => Some(format!("the error columns are those of film, not of {}", method.name())),
+        }
+    };
+    let points = study.points().iter().filter(|_| study.meshes().is_empty());
+    let gap = points.filter_map(features).find_map(gap)?;
+    let limits = match study.result_limits() {
+        [] => "",
+        _ => "; no limit is met for certain there",
+    };
+    Some(format!(
+        "note: the mesh error of some points is not known ({gap}){limits}; {THREE_MESHES}"
+    ))
 }
 
 /// A note on capsules whose gas has less than ambient pressure at the start.

@@ -16,7 +16,7 @@ pub fn rows(
 ) -> Vec<FinishedRow> {
     let row = |point: &Point| {
         let cells = journal::cells_of(point, records)?;
-        Some(FinishedRow::of(&point.job.id, &cells, limits))
+        Some(FinishedRow::of(&point.job, &cells, limits))
     };
     points.iter().filter_map(row).collect()
 }

@@ -41,5 +41,31 @@ fn a_row_outside_the_table_says_why_it_has_no_error() {
     let folder = TestFolder::finished(&study);
     let row = &folder.rows("results/grid")[0];
     assert_eq!(row["no_error_reason"], "contact.friction 0.2: the runs of the table have 0");
-    assert_eq!(row["peak_vz_change_to_n24"], Value::Null);
+    assert_eq!(row["peak_vz_error"], Value::Null);
+}
+
+/// One run, judged by limits above, near and below its speed.
+#[test]
+fn a_limit_counts_as_met_only_beyond_the_uncertainty_of_the_measure() {
+    let folder = TestFolder::new(&film(&json!({
+        "design": {"subdivisions": 4},
+        "solver": {"end_time": "40 ms"},
+        "limits": {"peak_speed": "< 100 m/s"}
+    })));
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let row = |limit: f64| {
+        let set = format!("limits.peak_speed=< {limit} m/s");
+        let text = folder.stdout(&["table", "grid.json", "--json", "--set", &set]);
+        serde_json::from_str::<Value>(&text).unwrap()[0].clone()
+    };
+    let first = row(100.0);
+    let number = |name: &str| first[name].as_f64().unwrap();
+    let (speed, error) = (number("peak_speed"), number("peak_speed_error"));
+    let uncertainty = error.hypot(number("peak_speed_assumed"));
+    assert!(uncertainty > error && uncertainty < 0.5 * speed, "{speed} ± {uncertainty}");
+    let safety = [1.01, 0.99, -0.99, -1.01].map(|factor| row(speed + factor * uncertainty));
+    let safety = safety.each_ref().map(|row| row["safety"].as_str().unwrap());
+    assert_eq!(safety, ["safe", "uncertain", "uncertain", "unsafe"]);
+    let other = folder.stdout(&["table", "grid.json", "--json", "--set", "limits.overshoot=< 9"]);
+    assert!(other.contains("\"safety\": \"uncertain\""), "no error is known: {other}");
 }

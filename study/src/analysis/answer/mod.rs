@@ -29,7 +29,7 @@ mod searches;
 mod trust;
 
 pub use points::{MixedPoint, PointCounts, VerdictSensitivity};
-pub use safety::{SafeCounts, Safety};
+pub use safety::{Nearest, SafeCounts, Safety};
 pub use searches::{Found, Searches};
 pub use trust::Trust;
 

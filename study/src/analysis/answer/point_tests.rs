@@ -1,7 +1,7 @@
 //! The answer of points with several runs.
 
 use super::*;
-use crate::analysis::fixture::{self, all, limits};
+use crate::analysis::fixture::{self, all, limits, with_error};
 use crate::job::proportion::Proportion;
 
 /// A run: strategy, mass, seed, `peak_vz`, `peak_kinetic_energy`, verdict.
@@ -66,7 +66,7 @@ fn seeds_do_not_multiply_pairs_and_a_value_is_the_best_where_all_its_runs_deploy
 #[test]
 fn a_point_counts_as_deployed_or_safe_if_all_its_runs_are() {
     let limits = limits(25.0);
-    let table = table(&runs()).judged(&limits);
+    let table = with_error(table(&runs()), "peak_vz", 0.0).judged(&limits);
     let seed = ["seed".to_owned()];
     let counts = PointCounts::of(&points(&table), &seed);
     assert_eq!((counts.points, counts.deployed, counts.mixed, counts.never), (4, 3, 1, 0));
@@ -75,13 +75,13 @@ fn a_point_counts_as_deployed_or_safe_if_all_its_runs_are() {
     assert_eq!(depends.choices, [("seed".to_owned(), 1)]);
 
     let safety = Safety::of(&table, &limits, &all(&table), &seed).unwrap();
-    let expected = SafeCounts { points: 4, safe: 2, mixed: 1, not_judged: 0 };
+    let expected = SafeCounts { points: 4, safe: 2, uncertain: 1, not_judged: 0 };
     assert_eq!((safety.counts, safety.limits[0].as_str()), (expected, "peak_vz < 25 m/s"));
     assert_eq!(safety.missed, [("peak_vz".to_owned(), 1), ("verdict".to_owned(), 1)]);
     // The nearest safe point is late at mass 1; its worst run has 20.02 m/s.
     let nearest = safety.nearest.unwrap();
-    assert_eq!(nearest.parameters[0].1, Value::Text("late".to_owned()));
-    assert!((nearest.value - (25.0 - 20.02) / 25.0).abs() < 1e-12);
+    assert_eq!(nearest.run.parameters[0].1, Value::Text("late".to_owned()));
+    assert!((nearest.run.value - (25.0 - 20.02) / 25.0).abs() < 1e-12);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::{named, parameters, parameters_of};
-use crate::analysis::replicates::Condensed;
+use crate::analysis::replicates::{Condensed, Runs};
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::proportion::Proportion;
@@ -58,15 +58,19 @@ pub struct MixedPoint {
     pub deployed: Proportion,
     /// Of the runs that the limits can judge, those that are safe.
     pub safe: Proportion,
+    /// Number of these that are unsafe: the others are within their uncertainty.
+    pub not_safe: usize,
 }
 
 impl MixedPoint {
     /// The points of which some runs deploy, or are safe, and some do not.
     pub fn all(points: &Condensed) -> Vec<Self> {
         let of = |point: usize| {
-            let (deployed, safe) = (points.runs[point].deployed, points.runs[point].safe);
-            let mixed = deployed.is_mixed() || safe.is_mixed();
-            mixed.then(|| Self { parameters: parameters_of(&points.table, point), deployed, safe })
+            let Runs { deployed, safe, not_safe, .. } = points.runs[point];
+            let missed = Proportion { met: not_safe, ..safe };
+            let mixed = deployed.is_mixed() || safe.is_mixed() || missed.is_mixed();
+            let parameters = || parameters_of(&points.table, point);
+            mixed.then(|| Self { parameters: parameters(), deployed, safe, not_safe })
         };
         (0..points.runs.len()).filter_map(of).collect()
     }

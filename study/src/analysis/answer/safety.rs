@@ -3,10 +3,11 @@
 use serde::Serialize;
 
 use super::{Extreme, named, parameters_of};
+use crate::analysis::at_limit::AtLimit;
 use crate::analysis::replicates::Condensed;
 use crate::input::units::DisplayUnit;
-use crate::input::value::Value;
 use crate::job::result_limit::ResultLimit;
+use crate::job::result_limit::Safety::{Safe, Uncertain, Unsafe};
 use crate::store::table::Table;
 
 /// The points by the limits of the study.
@@ -18,11 +19,23 @@ pub struct Safety {
     #[serde(flatten)]
     pub counts: SafeCounts,
     /// The run with the smallest margin of the safe point nearest to a limit; without one of the point that misses its
-    /// limits least. Its value is the margin.
-    pub nearest: Option<Extreme>,
+    /// limits least.
+    pub nearest: Option<Nearest>,
     /// For each missed limit its measure and the number of points that miss it, the most frequent first.
     #[serde(serialize_with = "named")]
     pub missed: Vec<(String, usize)>,
+}
+
+/// A run near a limit. The value of `run` is the margin.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Nearest {
+    /// The run.
+    #[serde(flatten)]
+    pub run: Extreme,
+    /// The limit with the smallest margin.
+    pub limit: AtLimit,
+    /// Least and largest value of its measure over the runs of the point, SI.
+    pub seeds: Option<[f64; 2]>,
 }
 
 /// Numbers of points with a job.
@@ -32,8 +45,8 @@ pub struct SafeCounts {
     pub points: usize,
     /// All their runs are safe.
     pub safe: usize,
-    /// Some of their runs are safe and some are not.
-    pub mixed: usize,
+    /// Within their uncertainty: that of a value reaches across a limit or is not known, or the runs differ.
+    pub uncertain: usize,
     /// No limit says more: a run failed, has not ended, or lacks a measure.
     pub not_judged: usize,
 }
@@ -51,24 +64,22 @@ impl Safety {
         }
         let points = Condensed::of(table, &table.one_row_per_job(rows), replicates);
         let missed = |limit: &ResultLimit| {
-            let is_missed = |row: &usize| {
-                let value = table.value(limit.measure, *row).unwrap_or(&Value::Null);
-                let judged = table.status(*row).and_then(|status| limit.judge(status, value));
-                judged.is_some_and(|judged| !judged.met)
-            };
+            let is_missed =
+                |row: &usize| table.judge(limit, *row).is_some_and(|judged| !judged.met);
             points.runs.iter().filter(|runs| runs.finest.iter().any(is_missed)).count()
         };
         let missed = limits.iter().map(|limit| (limit.measure.name().to_owned(), missed(limit)));
         let mut missed: Vec<(String, usize)> = missed.filter(|(_, points)| *points > 0).collect();
         missed.sort_by_key(|(_, points)| std::cmp::Reverse(*points));
         let all: Vec<usize> = points.feasible().collect();
-        let safe = |point: &usize| points.is_safe(*point) == Some(true);
-        let margins = all.iter().copied().filter(safe).filter_map(|p| margin(table, &points, p));
-        let nearest = margins.reduce(|a, b| if b.value < a.value { b } else { a });
+        let safe = |point: &usize| points.safety(*point) == Some(Safe);
+        let margins =
+            all.iter().copied().filter(safe).filter_map(|p| margin(table, limits, &points, p));
+        let nearest = margins.reduce(|a, b| if b.run.value < a.run.value { b } else { a });
         Some(Self {
             limits: limits.iter().map(ToString::to_string).collect(),
             counts: SafeCounts::of(&points, &all),
-            nearest: nearest.or_else(|| safest(table, &points, &all)),
+            nearest: nearest.or_else(|| safest(table, limits, &points, &all)),
             missed,
         })
     }
@@ -79,10 +90,10 @@ impl SafeCounts {
     fn of(points: &Condensed, some: &[usize]) -> Self {
         let mut counts = Self { points: some.len(), ..Self::default() };
         for point in some {
-            match points.is_safe(*point) {
-                Some(true) => counts.safe += 1,
-                _ if points.runs[*point].safe.is_mixed() => counts.mixed += 1,
-                Some(false) => {}
+            match points.safety(*point) {
+                Some(Safe) => counts.safe += 1,
+                Some(Uncertain) => counts.uncertain += 1,
+                Some(Unsafe) => {}
                 None => counts.not_judged += 1,
             }
         }
@@ -91,16 +102,28 @@ impl SafeCounts {
 }
 
 /// The point with the largest of the smallest margins; of points with a run that cannot be judged, none.
-fn safest(table: &Table, points: &Condensed, some: &[usize]) -> Option<Extreme> {
-    let judged = some.iter().copied().filter(|point| points.is_safe(*point).is_some());
-    let margins = judged.filter_map(|point| margin(table, points, point));
-    margins.reduce(|a, b| if b.value > a.value { b } else { a })
+fn safest(
+    table: &Table,
+    limits: &[ResultLimit],
+    points: &Condensed,
+    some: &[usize],
+) -> Option<Nearest> {
+    let judged = some.iter().copied().filter(|point| points.safety(*point).is_some());
+    let margins = judged.filter_map(|point| margin(table, limits, points, point));
+    margins.reduce(|a, b| if b.run.value > a.run.value { b } else { a })
 }
 
 /// The smallest margin of a point.
-fn margin(table: &Table, points: &Condensed, point: usize) -> Option<Extreme> {
+fn margin(
+    table: &Table,
+    limits: &[ResultLimit],
+    points: &Condensed,
+    point: usize,
+) -> Option<Nearest> {
     let (value, measure, row) = points.runs[point].worst_margin(table)?;
-    Some(Extreme {
+    let limit = limits.iter().find(|limit| limit.measure.name() == measure)?;
+    let seeds = points.spread(&measure, point).map(|[least, _, largest]| [least, largest]);
+    let run = Extreme {
         job: table.column("job")?.cells[row].to_string(),
         parameters: parameters_of(&points.table, point),
         measure,
@@ -110,5 +133,6 @@ fn margin(table: &Table, points: &Condensed, point: usize) -> Option<Extreme> {
         within_mesh_error: 0,
         extrapolated: false,
         trusted: table.is_trusted(row),
-    })
+    };
+    Some(Nearest { run, limit: AtLimit::of(table, limit, row), seeds })
 }

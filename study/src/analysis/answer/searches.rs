@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
+use crate::job::result_limit::Safety;
 use crate::job::row::{CellType, ColumnId, DerivedColumn};
 use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
@@ -195,7 +196,6 @@ fn deciding(table: &Table, parameter: &str, border: &Border) -> Option<String> {
         _ => return None,
     };
     let names = table.column(DerivedColumn::SmallestMarginOf.name())?;
-    let safe = table.column(DerivedColumn::Safe.name())?;
     let searched = table.parameters().find(|column| column.name == parameter)?;
     let is_side = |row: &usize| {
         side.is_none_or(|side| match (searched.cell_type, &searched.cells[*row]) {
@@ -214,7 +214,7 @@ fn deciding(table: &Table, parameter: &str, border: &Border) -> Option<String> {
     };
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for row in (0..table.rows()).filter(is_side).filter(fixed) {
-        if safe.cells[row] == Value::Bool(false) {
+        if table.safety(row).is_some_and(|safety| safety != Safety::Safe) {
             *counts.entry(names.cells[row].to_string()).or_default() += 1;
         }
     }

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::accuracy::{NO_ERROR_REASON, NOT_DEPLOYED};
 use crate::analysis::compare;
 use crate::analysis::statistics::Spread;
 use crate::input::value::Value;
@@ -10,7 +11,7 @@ use crate::job::row::ColumnId;
 use crate::store::table::Table;
 
 /// The audit over all done jobs.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Trust {
     /// Number of done jobs.
     pub jobs: usize,
@@ -29,6 +30,10 @@ pub struct Trust {
     pub numerically_damped: usize,
     /// Number of jobs that cannot be trusted: damped so, or with a passage or an intersection.
     pub not_trusted: usize,
+    /// Number of jobs whose mesh errors are not known.
+    pub without_error: usize,
+    /// Why the first of these has none.
+    pub no_error_reason: Option<String>,
 }
 
 /// The audit of the done jobs in some rows; `None` without any.
@@ -51,6 +56,11 @@ pub(super) fn trust(table: &Table, rows: &[usize]) -> Option<Trust> {
     };
     let total = |counts: &[i64]| (!counts.is_empty()).then(|| counts.iter().sum());
     let passages = counts(ColumnId::Passages);
+    let reason = |row: &usize| match &table.column(NO_ERROR_REASON)?.cells[*row] {
+        Value::Text(reason) if reason != NOT_DEPLOYED => Some(reason.clone()),
+        _ => None,
+    };
+    let reasons: Vec<String> = done.iter().filter_map(reason).collect();
     (!done.is_empty()).then(|| Trust {
         jobs: done.len(),
         ledger_residual: largest(ColumnId::LedgerResidual),
@@ -64,6 +74,8 @@ pub(super) fn trust(table: &Table, rows: &[usize]) -> Option<Trust> {
                 table.value(ColumnId::NumericallyDamped, **row) == Some(&Value::Bool(true))
             })
             .count(),
+        without_error: reasons.len(),
+        no_error_reason: reasons.into_iter().next(),
         not_trusted: done.iter().filter(|row| !table.is_trusted(**row)).count(),
     })
 }

@@ -9,6 +9,7 @@ use crate::analysis::statistics::Spread;
 use crate::input::keys::numerical;
 use crate::input::value::Value;
 use crate::job::proportion::Proportion;
+use crate::job::result_limit::Safety;
 use crate::job::row::{BetterSide, DerivedColumn};
 
 impl Field<'_> {
@@ -151,7 +152,7 @@ impl Field<'_> {
         });
         Candidate {
             points: points.len(),
-            safe: count(&|point| self.points.is_safe(point) == Some(true)),
+            safe: count(&|point| self.points.safety(point) == Some(Safety::Safe)),
             deployed: count(&|point| self.points.deploys(point) == Some(true)),
             failed: count(&|point| self.points.runs[point].failed > 0),
             safe_runs: sum(&|runs| runs.safe),
@@ -173,11 +174,12 @@ impl Field<'_> {
         })
     }
 
-    /// Of all runs of some points, those that are not safe, or without limits those that do not deploy.
+    /// Of all runs of some points, those that are neither safe nor within their uncertainty, or without limits those that
+    /// do not deploy.
     fn missed(&self, points: &[usize]) -> Proportion {
         self.sum(points, &|runs| {
             let met = match self.basis {
-                Basis::Limits => runs.safe.met,
+                Basis::Limits => runs.safe.of - runs.not_safe,
                 Basis::Verdicts => runs.deployed.met,
                 Basis::Measures => runs.finest.len(),
             };

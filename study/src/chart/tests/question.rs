@@ -1,7 +1,7 @@
 //! Charts of studies with replicates, limits or a search.
 
 use super::*;
-use crate::analysis::fixture;
+use crate::analysis::fixture::{self, with_error};
 use crate::analysis::replicates::Condensed;
 use crate::chart::kinds::ChartKind;
 use crate::chart::runs::Replicated;
@@ -37,7 +37,7 @@ fn table() -> Table {
             *cells = Cells::new(Status::Failed(FailureKind::StepLimit));
         }
     };
-    with_records(&points, edit).judged(&limits())
+    with_error(with_records(&points, edit), "peak_vz", 0.0).judged(&limits())
 }
 
 /// Calls `draw` with the condensed source of a table.
@@ -134,16 +134,16 @@ fn a_map_of_outcomes_counts_safe_runs_and_names_missed_limits() {
             "0/4",
             "misses peak_vz < 25 m/s (3)",
             "not deployed (1)",
-            "k/n: k of n runs are safe; safe: every limit is met.",
+            "k/n: k of n runs are safe; safe: every limit is met for certain.",
         ],
     );
     let texts =
         check::figure(&condensed(&table, &[], |source| map::svg(source, "verdict", axes).unwrap()));
     shows(&texts, &["4/4", "3/4", "3/3*", "k/n: k of n runs are deployed; deployed: the verdict."]);
-    let single = mixed().judged(&limits);
+    let single = with_error(mixed(), "peak_vz", 0.0).judged(&limits);
     let single = Source { limits: &limits, ..source(&single) };
     let texts = check::figure(&map::svg(&single, "safe", ["mass_flow_rate", "N"]).unwrap());
-    shows(&texts, &["safe", "not safe", "∅", "S", "P"]);
+    shows(&texts, &["safe", "unsafe", "∅", "S", "P"]);
     let table = mixed();
     let error = map::svg(&source(&table), "safe", ["mass_flow_rate", "N"]).unwrap_err();
     assert!(error.to_string().contains("the study has no limits"), "{error}");
@@ -167,7 +167,7 @@ fn a_run_at_a_bound_that_is_not_allowed_is_marked_as_one_beyond_it() {
         let table = with_records(&points, |index, cells| {
             cells.set(ColumnId::PeakVz, speed(index));
         });
-        let table = table.judged(&limits);
+        let table = with_error(table, "peak_vz", 0.0).judged(&limits);
         let source = Source { limits: &limits, ..source(&table) };
         check::figure(&map::svg(&source, measure, ["mass_flow_rate", "N"]).unwrap())
     };

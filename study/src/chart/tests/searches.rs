@@ -15,6 +15,7 @@ fn border(strategy: &str, mass: f64, met: [usize; 5], outcome: SearchResult) -> 
     let level = |(value, met)| Level {
         value,
         met: Proportion { met, of: REPLICATES },
+        uncertain: 0,
         not_judged: 0,
         open: 0,
     };

@@ -141,7 +141,7 @@ impl Inspected {
             _ => failure::explanation(self),
         };
         lines.extend(pressure::line(self));
-        lines.extend(limits::lines(stored, cells));
+        lines.extend(limits::lines(stored, id));
         lines.extend(audit(cells));
         lines.extend(damping(cells));
         lines.extend(self.suggestions().into_iter().map(|text| ("try", text)));
@@ -188,7 +188,7 @@ impl Inspected {
             "why": why,
             "suggestions": self.suggestions(),
         });
-        for (name, value) in limits::keys(stored, cells) {
+        for (name, value) in limits::keys(stored, id) {
             keys[name] = value;
         }
         for (column, value) in cells.iter() {

@@ -32,7 +32,7 @@ pub(super) fn advice(study: &Study, accuracy: Option<&str>) -> Result<Vec<String
         Ok(choices) => choices,
         Err(gap) => return Ok(vec![format!("advice: none: {gap}; {}", hint(study))]),
     };
-    let mut lines = vec![recommendation(study, table, &choices, error)];
+    let mut lines = vec![recommendation(study, &choices, error)];
     let mut refused: Vec<(&'static str, &str)> = choices
         .iter()
         .filter_map(|choice| {
@@ -47,8 +47,8 @@ pub(super) fn advice(study: &Study, accuracy: Option<&str>) -> Result<Vec<String
 }
 
 /// The cheapest method that keeps an error, with its errors, its saving and how to set it.
-fn recommendation(study: &Study, table: &MeshErrors, choices: &[Choice], error: f64) -> String {
-    let asked = format!("{} % of every measure but peak_vz", brief_number(100.0 * error));
+fn recommendation(study: &Study, choices: &[Choice], error: f64) -> String {
+    let asked = format!("{} % of times, energy and final state", brief_number(100.0 * error));
     let Some(choice) = choices.iter().find(|choice| choice.keeps(error)) else {
         let possible = choices.iter().filter(|choice| choice.refusal.is_none());
         let largest = |choice: &Choice| choice.asked().map(|(_, error)| error).fold(0.0, f64::max);
@@ -68,7 +68,7 @@ fn recommendation(study: &Study, table: &MeshErrors, choices: &[Choice], error: 
         "advice: {} keeps {asked} in 9 of 10 runs ({}; {}): {}; at solver.cfl {STEP} alone{locks}",
         method.name(),
         choice.errors_text(),
-        saving(study, table, choice.cost),
+        saving(study, choice.cost),
         setting(method, study),
     )
 }
@@ -98,11 +98,11 @@ fn hint(study: &Study) -> String {
 }
 
 /// The cost of a method over that of the study as it stands.
-fn saving(study: &Study, table: &MeshErrors, cost_of_method: f64) -> String {
+fn saving(study: &Study, cost_of_method: f64) -> String {
     let points = study.points();
     // A point runs on each of its meshes.
     let runs_of_one = study.meshes().len().max(1) as f64;
-    let all: f64 = points.iter().map(|point| cost(table, &Method::of(&point.job.scene))).sum();
+    let all: f64 = points.iter().map(|point| cost(&Method::of(&point.job.scene))).sum();
     let now = all * runs_of_one / points.len().max(1) as f64;
     if cost_of_method < now {
         format!("{:.1} times cheaper than now", now / cost_of_method)

@@ -53,8 +53,8 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         let wide = wide.filter(|found| found.undecided_inside(searches.replicates) > 0).count();
         if wide > 0 {
             eprintln!(
-                "{}: runs disagree between low and high (not_decided), so the border is wider than the tolerance; more \
-                 replicates make it narrower",
+                "{}: runs disagree, or are within their uncertainty, between low and high (not_decided), so the border is \
+                 wider than the tolerance; more replicates or a finer mesh make it narrower",
                 count(wide, "search")
             );
         }

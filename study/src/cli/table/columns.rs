@@ -6,7 +6,7 @@ use crate::cli::Format;
 use crate::input::keys;
 use crate::job::row::{ColumnId, DerivedColumn};
 use crate::platform::error::{Error, Result};
-use crate::print::points::{DEPLOYED, RUNS};
+use crate::print::points::{DEPLOYED, RUNS, SAFE};
 use crate::print::{is_part, width};
 use crate::store::table::select;
 use crate::store::table::{Column, Table};
@@ -113,7 +113,8 @@ fn main_columns<'a>(table: &'a Table, sort: &[String]) -> Vec<&'a Column> {
         (DEPLOYED, true),
         (ColumnId::Status.name(), true),
         (ColumnId::Verdict.name(), false),
-        (DerivedColumn::Safe.name(), true),
+        (DerivedColumn::Safety.name(), true),
+        (SAFE, true),
         (DerivedColumn::SmallestMargin.name(), true),
         (DerivedColumn::SmallestMarginOf.name(), false),
         (DerivedColumn::VerdictDependsOn.name(), true),
@@ -135,7 +136,7 @@ fn main_columns<'a>(table: &'a Table, sort: &[String]) -> Vec<&'a Column> {
         }
     }
     // What the limits say, ranges and proportions take more room.
-    let judged = of_points || table.column(DerivedColumn::Safe.name()).is_some();
+    let judged = of_points || table.column(DerivedColumn::Safety.name()).is_some();
     let most = if judged { MAX_WIDE_LINE_WIDTH } else { MAX_LINE_WIDTH };
     let always = shown.iter().filter(|(_, always)| *always).map(|(column, _)| column);
     let mut used: usize = columns.iter().chain(always).map(|column| width(table, column) + 2).sum();

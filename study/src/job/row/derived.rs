@@ -5,8 +5,8 @@ use super::columns::CellType;
 /// A column that follows from others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DerivedColumn {
-    /// Whether every limit is met.
-    Safe,
+    /// Whether every limit is met for certain.
+    Safety,
     /// The smallest margin.
     SmallestMargin,
     /// The measure that has it.
@@ -45,11 +45,13 @@ pub struct DerivedRow {
 /// Every derived column with a fixed name, in the order of [`DerivedColumn`]. A limit of the study also has `margin_<measure>`.
 pub static DERIVED_COLUMNS: [DerivedRow; 4] = [
     DerivedRow {
-        id: DerivedColumn::Safe,
-        name: "safe",
-        cell_type: CellType::Bool,
+        id: DerivedColumn::Safety,
+        name: "safety",
+        cell_type: CellType::Text,
         unit: "",
-        meaning: "whether every limit of the study is met; null where a measure has no value, or without limits",
+        meaning: "safe: every limit is met, by more than the uncertainty of its measure; unsafe: one is missed by more, or \
+                  the uncertainty is not known; uncertain: neither can be said. Null where a measure has no value, or \
+                  without limits",
     },
     DerivedRow {
         id: DerivedColumn::SmallestMargin,

@@ -41,7 +41,7 @@ fn line(searches: &Searches, index: usize) -> String {
             let sides = if *met_below { ("below", "above") } else { ("above", "below") };
             let open = match found.undecided_inside(searches.replicates) {
                 0 => String::new(),
-                values => format!("; runs disagree at {} between", count(values, "value")),
+                values => format!("; not decided at {} between", count(values, "value")),
             };
             format!("{name} {}: {what} {}, not {}{open}", interval([*low, *high]), sides.0, sides.1)
         }
@@ -79,7 +79,11 @@ fn line(searches: &Searches, index: usize) -> String {
         0 => String::new(),
         runs => format!("; {} not judged", count(runs, "run")),
     };
+    let uncertain = match found.sum(|level| level.uncertain) {
+        0 => String::new(),
+        runs => format!("; {} within the uncertainty", count(runs, "run")),
+    };
     let filtered =
         if found.border.filtered { "; the filter of the study ends this search" } else { "" };
-    format!("{text}{parameters}{not_judged}{filtered}")
+    format!("{text}{parameters}{uncertain}{not_judged}{filtered}")
 }

@@ -243,9 +243,12 @@ fn audit(trust: &Trust) -> String {
             format!("; fastest and hardest ignore {} that cannot be trusted", count(jobs, "job"))
         }
     };
+    let without_error = trust.no_error_reason.as_ref().map_or_else(String::new, |reason| {
+        format!("; mesh error of {} not known: {reason}", count(trust.without_error, "job"))
+    });
     format!(
         "{} done; ledger residual at most {} (energy_drift above {MAX_LEDGER_RESIDUAL}); \
-         {film}{damped}{not_trusted}",
+         {film}{damped}{not_trusted}{without_error}",
         count(trust.jobs, "job"),
         brief_number(trust.ledger_residual)
     )

@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 
 use super::{job_text, parameters_text};
 use crate::analysis::answer::{MixedPoint, PointCounts, SafeCounts, Safety, VerdictSensitivity};
-use crate::input::value::brief_number;
 use crate::job::Status;
 use crate::job::row::Counts;
+use crate::print::at_limit::at_limit;
 use crate::print::{MAX_VALUES, count};
 
 /// Most limits that a line names as missed.
@@ -46,14 +46,21 @@ pub(super) fn deployed(points: &PointCounts, runs: &Counts) -> String {
     text
 }
 
-/// The points whose runs do not all end alike, by name: "N=6: 3 of 5 deploy, 2 of 5 safe".
+/// The points whose runs do not all end alike, by name: "N=6: 3 of 5 deploy, 2 of 5 safe, 1 unsafe".
 pub(super) fn mixed(points: &[MixedPoint]) -> Vec<String> {
     let text = |point: &MixedPoint| {
-        let counts = [(point.deployed, "deploy"), (point.safe, "safe")];
-        let counts = counts.iter().filter(|(runs, _)| runs.is_mixed());
-        let counts = counts.map(|(runs, word)| format!("{} of {} {word}", runs.met, runs.of));
-        let counts = counts.collect::<Vec<_>>().join(", ");
-        format!("{}: {counts}", parameters_text(&point.parameters))
+        let (deployed, safe) = (point.deployed, point.safe);
+        let mut counts = Vec::new();
+        if deployed.is_mixed() {
+            counts.push(format!("{} of {} deploy", deployed.met, deployed.of));
+        }
+        if safe.of > 0 {
+            counts.push(format!("{} of {} safe", safe.met, safe.of));
+        }
+        if point.not_safe > 0 {
+            counts.push(format!("{} unsafe", point.not_safe));
+        }
+        format!("{}: {}", parameters_text(&point.parameters), counts.join(", "))
     };
     let mut texts: Vec<String> = points.iter().take(MAX_VALUES).map(text).collect();
     if points.len() > MAX_VALUES {
@@ -85,17 +92,19 @@ pub(super) fn safe(safety: &Safety) -> String {
     }
     if let Some(nearest) = &safety.nearest {
         let what =
-            if safety.counts.safe > 0 { "nearest to a limit" } else { "least beyond a limit" };
-        let (margin, job) = (brief_number(nearest.value), job_text(nearest));
-        let _ = write!(all, "; {what}: smallest_margin {margin} ({}) at {job}", nearest.measure);
+            if nearest.run.value < 0.0 { "least beyond a limit" } else { "nearest to a limit" };
+        let (limit, job) = (at_limit(&nearest.limit, nearest.seeds), job_text(&nearest.run));
+        let _ = write!(all, "; {what}: {limit}, at {job}");
     }
     all
 }
 
-/// "12 of 16 points safe, 1 mixed".
+/// "12 of 16 points safe, 1 within the uncertainty".
 fn counts(counts: &SafeCounts, noun: &str) -> String {
     let mut text = format!("{} of {} safe", counts.safe, count(counts.points, noun));
-    for (number, noun) in [(counts.mixed, "mixed"), (counts.not_judged, "not judged")] {
+    for (number, noun) in
+        [(counts.uncertain, "within the uncertainty"), (counts.not_judged, "not judged")]
+    {
         if number > 0 {
             let _ = write!(text, ", {number} {noun}");
         }

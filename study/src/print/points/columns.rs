@@ -1,6 +1,6 @@
 //! The columns of a table of points, one number per column.
 
-use super::{DEPLOYED, RANGE, RUNS};
+use super::{DEPLOYED, RANGE, RUNS, SAFE};
 use crate::accuracy::is_error_column;
 use crate::analysis::replicates::{Condensed, Runs, integer, proportion_columns};
 use crate::input::value::Value;
@@ -38,12 +38,13 @@ pub fn columns(table: &Table, condensed: &Condensed) -> Vec<Column> {
         let [least, largest] = RANGE;
         match median.name.as_str() {
             name if is_error_column(name) => new.push(median.clone()),
-            _ if index <= parameters || !number && median.name != DerivedColumn::Safe.name() => {
-                new.push(median.clone());
+            name if name == DerivedColumn::Safety.name() => {
+                let word = |point| condensed.safety(point).map_or(Value::Null, Value::from);
+                let cells = (0..condensed.runs.len()).map(word).collect();
+                new.push(Column { cells, ..median.clone() });
+                new.extend(proportions(SAFE, "are safe", |runs| runs.safe));
             }
-            name if name == DerivedColumn::Safe.name() => {
-                new.extend(proportions(name, "are safe", |runs| runs.safe));
-            }
+            _ if index <= parameters || !number => new.push(median.clone()),
             name if name == DerivedColumn::SmallestMargin.name() => {
                 new.extend([median.clone(), with(largest, &condensed.largest)]);
             }

@@ -4,8 +4,6 @@ use crate::analysis::compare::measured;
 use crate::analysis::replicates::{self, Condensed, Runs};
 use crate::input::value::Value;
 use crate::input::{expression, keys};
-use crate::job::proportion::Proportion;
-use crate::job::row::{CellType, DerivedColumn};
 use crate::platform::error::Result;
 use crate::print::shown_cells;
 use crate::store::table::select::filtered;
@@ -18,6 +16,8 @@ mod columns;
 pub const RUNS: &str = "runs";
 /// Number of runs that deployed.
 pub const DEPLOYED: &str = "deployed";
+/// Column with the number of runs that are safe.
+pub const SAFE: &str = "safe";
 /// Ends of the names of the smallest and the largest value of a measure.
 const RANGE: [&str; 2] = ["_least", "_largest"];
 
@@ -52,7 +52,7 @@ pub fn chosen_runs(
     if !names.iter().any(|name| points.is_result(name)) {
         return filtered(table, condition);
     }
-    let kept = filtered(&points.as_variables(), condition)?;
+    let kept = filtered(&points.table, condition)?;
     Ok(kept.iter().flat_map(|row| points.condensed.runs[*row].rows.clone()).collect())
 }
 
@@ -69,21 +69,6 @@ impl<'a> PointTable<'a> {
         let keys = &self.runs_table.columns[keys_start(self.runs_table)..];
         let given = self.table.parameters().chain(keys).any(|column| column.name == name);
         !given && self.table.column(name).is_some()
-    }
-
-    /// The table with `safe` as a truth value: whether every run is safe.
-    fn as_variables(&self) -> Table {
-        let mut table = self.table.clone();
-        let safe = DerivedColumn::Safe.name();
-        if let Some(column) = table.columns.iter_mut().find(|column| column.name == safe) {
-            column.cell_type = CellType::Bool;
-            let every = |runs: &Runs| match runs.safe {
-                Proportion { of: 0, .. } => Value::Null,
-                safe => Value::Bool(safe.met == safe.of),
-            };
-            column.cells = self.condensed.runs.iter().map(every).collect();
-        }
-        table
     }
 
     /// The table as a reader sees it: how the runs of each point ended, and the number of runs that have a measure, where

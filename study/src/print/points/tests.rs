@@ -6,15 +6,15 @@ use crate::analysis::fixture;
 /// Strategy a: three seeds, one failed. Strategy b: three seeds, all safe.
 fn table() -> Table {
     let mut table = fixture::table(
-        "job strategy seed status   verdict  peak_vz safe  smallest_margin smallest_margin_of verdict_depends_on same_job_as film.thickness
-         1   a        1    done     deployed 20.0    true  0.2             peak_vz            seed               -           2e-5
-         2   a        2    done     stalled  30.0    false -0.2            verdict            seed               -           2e-5
+        "job strategy seed status   verdict  peak_vz safety  smallest_margin smallest_margin_of verdict_depends_on same_job_as film.thickness
+         1   a        1    done     deployed 20.0    safe  0.2             peak_vz            seed               -           2e-5
+         2   a        2    done     stalled  30.0    unsafe -0.2            verdict            seed               -           2e-5
          3   a        3    unstable -        99.0    -     9.0             -                  -                  -           2e-5
-         4   b        1    done     deployed 10.0    true  0.6             peak_vz            -                  -           2e-5
-         5   b        2    done     deployed 11.0    true  0.5612          peak_vz            -                  -           2e-5
-         6   b        3    done     deployed 15.0    true  0.4             peak_vz            -                  -           2e-5",
+         4   b        1    done     deployed 10.0    safe  0.6             peak_vz            -                  -           2e-5
+         5   b        2    done     deployed 11.0    safe  0.5612          peak_vz            -                  -           2e-5
+         6   b        3    done     deployed 15.0    safe  0.4             peak_vz            -                  -           2e-5",
     );
-    table.columns[10].cell_type = CellType::Text;
+    table.columns[10].cell_type = crate::job::row::CellType::Text;
     table
 }
 
@@ -71,14 +71,15 @@ fn a_cell_for_a_reader_has_the_range_and_the_interval() {
 fn a_condition_on_results_chooses_points_and_one_on_a_replicate_runs() {
     let table = table();
     let chosen = |condition: &str| chosen_runs(&table, Some(condition), &seeds()).unwrap();
-    assert_eq!(chosen("safe and smallest_margin > 0.1"), [3, 4, 5]);
-    assert_eq!(chosen("not safe"), [0, 1, 2]);
+    assert_eq!(chosen("safety == 'safe' and smallest_margin > 0.1"), [3, 4, 5]);
+    assert_eq!(chosen("safety != 'safe'"), [0, 1, 2]);
     assert_eq!(chosen("peak_vz >= 25"), [0, 1, 2], "the median, with all runs");
     assert_eq!(chosen("peak_vz_largest < 16 and deployed == deployed_of"), [3, 4, 5]);
     assert_eq!(chosen("strategy == 'a'"), [0, 1, 2]);
     assert_eq!(chosen("seed <= 2"), [0, 1, 3, 4]);
     assert_eq!(chosen("seed <= 2 and peak_vz > 15"), [0, 1]);
-    let single = chosen_runs(&table, Some("safe and smallest_margin > 0.1"), &[]).unwrap();
+    let single =
+        chosen_runs(&table, Some("safety == 'safe' and smallest_margin > 0.1"), &[]).unwrap();
     assert_eq!(single, [0, 3, 4, 5], "single runs");
     assert!(chosen_runs(&table, Some("deployd == 1"), &seeds()).is_err());
 }

@@ -33,7 +33,7 @@ pub const EXTRAPOLATED: &str = "_extrapolated";
 /// End of the name of its error.
 pub const EXTRAPOLATED_ERROR: &str = "_extrapolated_error";
 /// Meaning of its error, one line.
-pub const EXTRAPOLATED_ERROR_MEANING: &str = "mesh error of the extrapolated value: 9 of 10 runs are nearer to the limit of fine meshes (t_50_z_rim, peak_vz: to n 24); outside the table of mesh errors it follows from three meshes and is null with two";
+pub const EXTRAPOLATED_ERROR_MEANING: &str = "mesh error of the extrapolated value: 9 of 10 runs are nearer to the value on the finest mesh of the table; outside the table of mesh errors it follows from three meshes and is null with two";
 
 /// Name of the column with the extrapolated values of a measure, and of that with their errors.
 pub fn names(measure: &str) -> [String; 2] {

@@ -3,12 +3,16 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::extrapolated::names;
 use super::{Column, Table};
+use crate::accuracy::promised::promise;
+use crate::accuracy::row::uncertainty;
+use crate::accuracy::{NO_ERROR_REASON, PROMISED};
 use crate::input::keys::numerical::is_numerical;
 use crate::input::value::Value;
 use crate::job::Status;
-use crate::job::result_limit::{ResultLimit, Safety};
-use crate::job::row::{CellType, DerivedColumn, SAME_JOB_AS};
+use crate::job::result_limit::{AllJudged, Judged, ResultLimit, Safety};
+use crate::job::row::{CellType, ColumnId, DerivedColumn, SAME_JOB_AS};
 
 impl Table {
     /// The table with the columns of these limits (extrapolated values count, where there are any), and with `verdict_depends_on` where the study varies a
@@ -17,15 +21,15 @@ impl Table {
     pub fn judged(mut self, limits: &[ResultLimit]) -> Self {
         let mut new = Vec::new();
         if !limits.is_empty() {
-            let safety: Vec<Option<Safety>> =
-                (0..self.rows()).map(|row| self.safety(limits, row)).collect();
-            let cells = |of: fn(&Safety, &[ResultLimit]) -> Value| {
+            let safety: Vec<Option<AllJudged>> =
+                (0..self.rows()).map(|row| self.all_judged(limits, row)).collect();
+            let cells = |of: fn(&AllJudged, &[ResultLimit]) -> Value| {
                 safety
                     .iter()
                     .map(|row| row.as_ref().map_or(Value::Null, |row| of(row, limits)))
                     .collect()
             };
-            new.push(derived(DerivedColumn::Safe, cells(|row, _| Value::Bool(row.safe))));
+            new.push(derived(DerivedColumn::Safety, cells(|row, _| row.safety.into())));
             let smallest = cells(|row, _| Value::Number(row.smallest_margin));
             new.push(derived(DerivedColumn::SmallestMargin, smallest));
             let name =
@@ -43,19 +47,50 @@ impl Table {
         self
     }
 
-    /// The safety of a row.
-    fn safety(&self, limits: &[ResultLimit], row: usize) -> Option<Safety> {
+    /// All limits of a row.
+    fn all_judged(&self, limits: &[ResultLimit], row: usize) -> Option<AllJudged> {
         let value = |column| self.estimate(column, row).unwrap_or(&Value::Null);
-        Safety::of(limits, self.status(row)?, value)
+        AllJudged::of(limits, self.status(row)?, value, |measure| self.uncertainty(measure, row))
+    }
+
+    /// What a limit says of a row.
+    pub fn judge(&self, limit: &ResultLimit, row: usize) -> Option<Judged> {
+        let value = self.estimate(limit.measure, row).unwrap_or(&Value::Null);
+        limit.judge(self.status(row)?, value, self.uncertainty(limit.measure, row))
+    }
+
+    /// The word of the column `safe`.
+    pub fn safety(&self, row: usize) -> Option<Safety> {
+        Safety::of_cell(&self.column(DerivedColumn::Safety.name())?.cells[row])
+    }
+
+    /// Mesh error of the value that a row stands for, and its change over the ranges of the assumed values, SI.
+    pub fn error_parts(&self, measure: ColumnId, row: usize) -> [Option<f64>; 2] {
+        let number = |name: &str| match self.column(name)?.cells[row] {
+            Value::Number(number) => Some(number),
+            _ => None,
+        };
+        let Some(promised) = promise(measure.name()) else { return [None; 2] };
+        let [value, error] = names(measure.name());
+        let mesh =
+            if number(&value).is_some() { number(&error) } else { number(promised.error_column) };
+        [mesh, number(promised.assumed_column)]
+    }
+
+    /// Uncertainty of the value that a row stands for, SI; `None` where it is not known.
+    pub fn uncertainty(&self, measure: ColumnId, row: usize) -> Option<f64> {
+        let near = self.value(ColumnId::NearThreshold, row) == Some(&Value::Bool(true));
+        let reason = self.column(NO_ERROR_REASON).map(|column| &column.cells[row]);
+        let reason = match reason {
+            Some(Value::Text(reason)) => Some(reason.as_str()),
+            _ => None,
+        };
+        uncertainty(measure, near, reason, |index| self.error_parts(PROMISED[index].measure, row))
     }
 
     /// The margins of one limit.
     fn margins(&self, limit: &ResultLimit) -> Column {
-        let margin = |row| {
-            let value = self.estimate(limit.measure, row)?;
-            let judged = limit.judge(self.status(row)?, value)?;
-            Some(Value::Number(judged.margin))
-        };
+        let margin = |row| Some(Value::Number(self.judge(limit, row)?.margin));
         let cells = (0..self.rows()).map(|row| margin(row).unwrap_or(Value::Null)).collect();
         Column::new(limit.column_name(), (CellType::Number, "1"), limit.margin_meaning(), cells)
     }
@@ -119,9 +154,10 @@ fn derived(column: DerivedColumn, cells: Vec<Value>) -> Column {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analysis::fixture::with_error;
     use crate::job::point::Point;
     use crate::job::result_limit::Condition;
-    use crate::job::row::{Cells, ColumnId};
+    use crate::job::row::Cells;
     use crate::job::{Job, JobId};
     use crate::run::fixture;
     use crate::store::journal::Record;
@@ -161,7 +197,7 @@ mod tests {
         );
         let names = |table: &Table| table.columns.last().unwrap().name.clone();
         assert_eq!(names(&judged), names(&table), "the last column stays the last");
-        assert!(judged.column("safe").is_none(), "no limits, no margins");
+        assert!(judged.column("safety").is_none(), "no limits, no margins");
     }
 
     #[test]
@@ -174,10 +210,14 @@ mod tests {
         let mut verdicts = ["deployed"; 6];
         verdicts[3] = "stalled";
         // The fixture's third point is infeasible.
-        let judged = table(verdicts, [10.0, 25.0, 0.0, 10.0, 0.0, 0.0]).judged(&limits);
+        let table = table(verdicts, [10.0, 25.0, 0.0, 10.0, 0.0, 0.0]);
+        let judged = with_error(table, "peak_vz", 0.0).judged(&limits);
         let cells =
             |name: &str| [0, 1, 3].map(|row| judged.column(name).unwrap().cells[row].clone());
-        assert_eq!(cells("safe"), [true, false, false].map(Value::Bool));
+        assert_eq!(
+            cells("safety"),
+            [Safety::Safe, Safety::Unsafe, Safety::Unsafe].map(Value::from)
+        );
         assert_eq!(cells("smallest_margin"), [0.5, -0.25, -1.0].map(Value::Number));
         let names = ["peak_vz", "peak_vz", "verdict"].map(|name| Value::Text(name.to_owned()));
         assert_eq!(cells("smallest_margin_of"), names);

@@ -26,7 +26,6 @@ pub mod reference;
 pub mod same_job;
 pub mod select;
 
-pub use mesh_errors::NOT_DEPLOYED;
 use same_job::PointRow;
 
 /// Suffix of a column whose name a parameter of the study has.

@@ -72,9 +72,10 @@ fn table_columns(page: &mut String) {
          beyond it |"
     );
     for promised in &PROMISED {
-        let (name, unit) = (promised.error_column, promised.measure.column().unit);
-        let _ =
-            writeln!(page, "| `{name}` | {number} | {unit} |  |  |  | {} |", promised.meaning());
+        let unit = promised.measure.column().unit;
+        for (name, meaning) in promised.columns() {
+            let _ = writeln!(page, "| `{name}` | {number} | {unit} |  |  |  | {meaning} |");
+        }
     }
     let of_meshes = [
         (

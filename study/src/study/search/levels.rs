@@ -11,6 +11,8 @@ pub struct Level {
     pub value: f64,
     /// Of the runs that can be judged: how many meet the criterion.
     pub met: Proportion,
+    /// Number of those that may meet it within their uncertainty.
+    pub uncertain: usize,
     /// Number of runs that ended and cannot be judged: failed, infeasible, without the measure.
     pub not_judged: usize,
     /// Number of runs that have not ended.
@@ -20,10 +22,16 @@ pub struct Level {
 impl Level {
     /// The outcome, where it is decided: one run decides alone, several by the Wilson interval.
     pub fn outcome(&self, replicates: usize) -> Option<bool> {
-        if replicates > 1 {
-            self.met.majority()
-        } else {
-            (self.met.of > 0).then_some(self.met.met > 0)
+        let sure = |proportion: Proportion| {
+            if replicates > 1 { proportion.majority() } else { Some(proportion.met > 0) }
+        };
+        // Runs within their uncertainty speak for neither side.
+        let may = Proportion { met: self.met.met + self.uncertain, ..self.met };
+        match (sure(self.met), sure(may)) {
+            _ if self.met.of == 0 => None,
+            (Some(true), _) => Some(true),
+            (_, Some(false)) => Some(false),
+            _ => None,
         }
     }
 }
@@ -121,6 +129,7 @@ mod tests {
         let level = |value: f64| Level {
             value,
             met: Proportion { met: rule(value), of: replicates },
+            uncertain: 0,
             not_judged: 0,
             open: 0,
         };

@@ -11,6 +11,7 @@ use crate::input::value::Value;
 use crate::job::JobId;
 use crate::job::point::{Point, Searched};
 use crate::job::proportion::Proportion;
+use crate::job::result_limit::Safety;
 use crate::study::Study;
 use crate::study::finished::FinishedRow;
 
@@ -137,17 +138,19 @@ impl<'a> Replay<'a> {
     }
 
     fn level(&self, value: f64, runs: &[Run]) -> Level {
-        let mut level = Level { value, met: Proportion::default(), not_judged: 0, open: 0 };
+        let mut level =
+            Level { value, met: Proportion::default(), uncertain: 0, not_judged: 0, open: 0 };
         let Some(search) = &self.study.grid.search else { return level };
         for run in runs {
             match self.finished.get(&run.id) {
                 _ if !run.feasible => level.not_judged += 1,
                 None => level.open += 1,
-                Some(row) => match meets(search.criterion, row) {
+                Some(row) => match known(search.criterion, row) {
                     None => level.not_judged += 1,
-                    Some(met) => {
+                    Some(safety) => {
                         level.met.of += 1;
-                        level.met.met += usize::from(met);
+                        level.met.met += usize::from(safety == Safety::Safe);
+                        level.uncertain += usize::from(safety == Safety::Uncertain);
                     }
                 },
             }
@@ -156,12 +159,17 @@ impl<'a> Replay<'a> {
     }
 }
 
-/// Whether a row meets a criterion; `None` where nothing can be said.
-fn meets(criterion: Criterion, row: &FinishedRow) -> Option<bool> {
+/// What is known of a row's criterion; `None` where nothing can be said.
+fn known(criterion: Criterion, row: &FinishedRow) -> Option<Safety> {
     match criterion {
-        Criterion::Deployed => row.verdict.map(|verdict| verdict == Verdict::Deployed),
-        Criterion::Limit(index) => row.met.get(index).copied().flatten(),
-        Criterion::Safe if row.met.contains(&Some(false)) => Some(false),
-        Criterion::Safe => row.met.iter().try_fold(true, |all, met| met.map(|met| all && met)),
+        Criterion::Deployed => row.verdict.map(|verdict| match verdict {
+            Verdict::Deployed => Safety::Safe,
+            _ => Safety::Unsafe,
+        }),
+        Criterion::Limit(index) => row.limits.get(index).copied().flatten(),
+        Criterion::Safe if row.limits.contains(&Some(Safety::Unsafe)) => Some(Safety::Unsafe),
+        Criterion::Safe => {
+            row.limits.iter().try_fold(Safety::Safe, |all, one| Some(all.max((*one)?)))
+        }
     }
 }

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use billow_study::accuracy::PROMISED;
+use billow_study::accuracy::{MeshErrors, PROMISED};
 use billow_study::cli::options::ResultsOption;
 use billow_study::cli::results::{self, StudyArgs};
 use billow_study::input::value::Value;
@@ -63,13 +63,22 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         let problem = "no scene has this mesh";
         return Err(Error::invalid_option("--reference", &value, problem, allowed, ""));
     };
-    let text = serde_json::to_string_pretty(&table).unwrap_or_default() + "\n";
+    let text = text(&table);
     write_output(&Disk, path, text.as_bytes()).map_err(|error| disk_error(path, &error))?;
     let errors = &table.errors;
     let scenes = errors.iter().map(|entry| entry.scenes).max().unwrap_or(0);
     let path = path.display();
     args.options.note(&format!("{path}: {} errors, of up to {scenes} scenes", errors.len()));
     Ok(())
+}
+
+/// The table as a file: one line per error.
+fn text(table: &MeshErrors) -> String {
+    let lines = table.errors.iter().filter_map(|entry| serde_json::to_string(entry).ok());
+    let lines = lines.collect::<Vec<_>>().join(",\n");
+    let head = MeshErrors { errors: Vec::new(), ..table.clone() };
+    let head = serde_json::to_string_pretty(&head).unwrap_or_default();
+    head.replace("\"errors\": []", &format!("\"errors\": [\n{lines}\n]")) + "\n"
 }
 
 const COLUMNS: [&str; 9] =

@@ -1,7 +1,6 @@
 //! The limit of a measure as the mesh is refined, with its uncertainty.
 //!
 //! ```text
-//! of several scenes: change = mean of f₀/f_ref − 1;  U² = mean of their squared uncertainties + (largest distance from it)²
 //! noise of a median of k runs = half their range/√k
 //! f(h) = f₀ + a hᵖ,  h = 1/n      weighted least squares, weights 1/h; p in [0.5, 2]
 //! σ = √(Σ w r² / Σ w · m/(m − 3))  scatter of m meshes about the fit
@@ -16,7 +15,6 @@
 use std::collections::BTreeMap;
 
 use billow_solver::scene::ModelKind;
-use billow_study::accuracy::Limit;
 use billow_study::analysis::statistics::Spread;
 use billow_study::job::row::ColumnId;
 
@@ -41,7 +39,6 @@ pub(super) struct Level {
     pub(super) value: f64,
     /// Standard error of that value by the seeds.
     pub(super) noise: f64,
-    pub(super) runs: usize,
 }
 
 /// The limit of a measure.
@@ -161,42 +158,10 @@ impl Normal {
     }
 }
 
-/// Runs on a mesh from which a limit may follow, at least; and number of such meshes.
-const LIMIT_RUNS: usize = 4;
+/// Meshes of which a limit can follow, at least.
 const LIMIT_MESHES: usize = 4;
 /// Coarser meshes have no part in a limit where enough others are there. Chosen: on n 2 and 3 a panel is not yet round.
 const COARSEST_OF_LIMIT: u32 = 4;
-
-/// To what a measure tends, from the scenes with several runs on several meshes: the mean of their limits, with an
-/// uncertainty that holds them all.
-pub(super) fn limit(scenes: &[&SceneRuns], measure: ColumnId, reference: u32) -> Limit {
-    let of_scene = |scene: &&SceneRuns| {
-        let levels = levels(scene, measure);
-        if levels.iter().filter(|level| level.runs >= LIMIT_RUNS).count() < LIMIT_MESHES {
-            return None;
-        }
-        let finest = levels.iter().find(|level| level.subdivisions == reference)?.value;
-        let fit = fit(&levels).filter(|_| finest != 0.0)?;
-        Some(Limit {
-            known: fit.has_limit(&levels),
-            change: fit.limit / finest - 1.0,
-            uncertainty: (fit.uncertainty / finest).abs(),
-            order: fit.order,
-        })
-    };
-    let limits: Vec<Limit> = scenes.iter().filter_map(of_scene).collect();
-    let count = limits.len().max(1) as f64;
-    let mean = |of: fn(&Limit) -> f64| limits.iter().map(of).sum::<f64>() / count;
-    let change = mean(|limit| limit.change);
-    let away = limits.iter().map(|limit| (limit.change - change).abs()).fold(0.0, f64::max);
-    let squares = mean(|limit| limit.uncertainty * limit.uncertainty);
-    Limit {
-        known: !limits.is_empty() && limits.iter().all(|limit| limit.known),
-        change,
-        uncertainty: (squares + away * away).sqrt(),
-        order: limits.iter().map(|limit| limit.order).reduce(f64::min).unwrap_or(0.0),
-    }
-}
 
 /// The medians of a measure by mesh, coarsest first: those of which a limit can follow.
 pub(super) fn levels(scene: &SceneRuns, measure: ColumnId) -> Vec<Level> {
@@ -216,8 +181,7 @@ pub(super) fn levels(scene: &SceneRuns, measure: ColumnId) -> Vec<Level> {
     for (subdivisions, spread) in &spreads {
         let half_range = if spread.count > 1 { half_range(spread) } else { typical };
         let noise = half_range / (spread.count as f64).sqrt();
-        let (value, runs) = (spread.median, spread.count);
-        levels.push(Level { subdivisions: *subdivisions, value, noise, runs });
+        levels.push(Level { subdivisions: *subdivisions, value: spread.median, noise });
     }
     let fine = levels.iter().filter(|level| level.subdivisions >= COARSEST_OF_LIMIT).count();
     if fine >= LIMIT_MESHES {
@@ -233,8 +197,7 @@ mod tests {
     const MESHES: [u32; 7] = [4, 6, 8, 12, 16, 24, 32];
 
     fn levels(of: impl Fn(f64) -> f64, noise: f64) -> Vec<Level> {
-        let level =
-            |n: &u32| Level { subdivisions: *n, value: of(1.0 / f64::from(*n)), noise, runs: 1 };
+        let level = |n: &u32| Level { subdivisions: *n, value: of(1.0 / f64::from(*n)), noise };
         MESHES.iter().map(level).collect()
     }
 

@@ -3,15 +3,20 @@
 use std::collections::BTreeMap;
 
 use billow_solver::output::measures::Verdict;
-use billow_solver::scene::{ModelKind, Scene};
+use billow_solver::scene::paper::LOSS_FACTOR;
+use billow_solver::scene::{HeatTransfer, ModelKind, Scene};
 
 use billow_study::accuracy::features::step;
 use billow_study::accuracy::promised::promise;
 use billow_study::accuracy::{Features, Promised};
+use billow_study::analysis::statistics::Spread;
 use billow_study::input::keys::numerical::{self, MESH, MODEL, SEED};
 use billow_study::job::canonical_json;
 use billow_study::job::row::{Cells, ColumnId};
 use billow_study::store::stored::Stored;
+
+/// The default heat transfer coefficient, W/(m² K).
+const HEAT_TRANSFER: f64 = 0.3;
 
 /// One trusted run.
 #[derive(Debug, Clone)]
@@ -39,12 +44,33 @@ impl MeshRun {
         self.cells.number(measure)
     }
 
+    /// The assumed value in which it differs from the default, as in `film.loss_factor 0.003`; empty where it does not.
+    pub(super) fn assumed(&self) -> String {
+        let (film, heat) = (&self.scene.film, self.scene.gas.heat_transfer);
+        match heat {
+            _ if film.loss_factor != LOSS_FACTOR => {
+                format!("film.loss_factor {}", film.loss_factor)
+            }
+            HeatTransfer::Coefficient(h) if h != HEAT_TRANSFER => format!("gas.heat_transfer {h}"),
+            _ => String::new(),
+        }
+    }
+
     /// Model and subdivisions; a model without mesh has 0.
     pub(super) fn mesh(&self) -> (ModelKind, u32) {
         match self.scene.solver.model {
             ModelKind::Film => (ModelKind::Film, self.scene.design.subdivisions),
             meshless => (meshless, 0),
         }
+    }
+}
+
+impl SceneRuns {
+    /// The median of a measure on a mesh, without the runs in which an assumed value differs; `None` where it is 0.
+    pub(super) fn median(&self, measure: ColumnId, mesh: (ModelKind, u32)) -> Option<f64> {
+        let on = |run: &&MeshRun| run.mesh() == mesh && run.assumed().is_empty();
+        let values = self.runs.iter().filter(on).filter_map(|run| run.measure(measure));
+        Spread::of(values).map(|spread| spread.median).filter(|median| *median != 0.0)
     }
 }
 
@@ -77,11 +103,13 @@ pub(super) fn by_scene(all: &[Stored<'_>]) -> Vec<SceneRuns> {
 }
 
 /// Parameters that name no scene.
-const NO_SCENE: [&str; 3] = [MESH, MODEL, SEED];
+const NO_SCENE: [&str; 5] = [MESH, MODEL, SEED, "film.loss_factor", "gas.heat_transfer"];
 
 /// Text that is equal for runs of one scene.
 fn key(scene: &Scene) -> String {
     let mut scene = scene.clone();
+    scene.film.loss_factor = LOSS_FACTOR;
+    scene.gas.heat_transfer = HeatTransfer::Coefficient(HEAT_TRANSFER);
     scene.design.subdivisions = 0;
     scene.seed = 0;
     scene.solver.model = ModelKind::Film;

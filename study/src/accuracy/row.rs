@@ -1,0 +1,164 @@
+//! What is known of the errors of one row: mesh errors, changes with the assumed values, and the uncertainty of a value.
+
+use billow_solver::output::measures::Verdict;
+use billow_solver::scene::{ModelKind, Scene};
+
+use super::promised::{PROMISED, promise};
+use super::{Features, MeshErrors, Method};
+use crate::input::value::Value;
+use crate::job::Status;
+use crate::job::row::{CellType, Cells, ColumnGroup, ColumnId};
+
+/// The errors of one row, in the order of [`PROMISED`], and why some are not known.
+pub struct RowErrors {
+    /// Mesh errors, in the unit of the measure.
+    pub errors: [Option<f64>; PROMISED.len()],
+    /// Changes over the ranges of the assumed values.
+    pub assumed: [Option<f64>; PROMISED.len()],
+    /// Why some mesh errors are not known.
+    pub reason: Option<String>,
+}
+
+impl RowErrors {
+    /// Those of a row without a result.
+    pub const NONE: Self =
+        Self { errors: [None; PROMISED.len()], assumed: [None; PROMISED.len()], reason: None };
+
+    /// Those of the row of a job.
+    pub fn of(scene: &Scene, cells: &Cells) -> Self {
+        if cells.status() != Status::Done {
+            return Self::NONE;
+        }
+        let [Some(top_radius), Some(height)] =
+            [ColumnId::TopRadius, ColumnId::Height].map(|column| cells.number(column))
+        else {
+            return Self::NONE;
+        };
+        let table = MeshErrors::shipped();
+        let features = Features::of(scene, top_radius, height);
+        if let Some(gap) = table.gap(scene, &features) {
+            return Self { reason: Some(gap), ..Self::NONE };
+        }
+        let method = Method::of(scene);
+        if method.model != ModelKind::Film {
+            let known = PROMISED.map(|promised| table.error(&method, &features, &promised));
+            let reason = match known.iter().find_map(|error| error.as_ref().ok()) {
+                Some(_) => of_another_model(&method),
+                None => known.into_iter().find_map(Result::err).unwrap_or_default(),
+            };
+            return Self { reason: Some(reason), ..Self::NONE };
+        }
+        let mut reason = None;
+        let deployed = cells.verdict() == Some(Verdict::Deployed) || cells.verdict().is_none();
+        let errors = PROMISED.map(|promised| {
+            let value = cells.number(promised.measure)?;
+            if promised.is_at_end() && !deployed {
+                reason = Some(NOT_DEPLOYED.to_owned());
+                return None;
+            }
+            match table.error(&method, &features, &promised) {
+                Ok(error) => Some(error.of_itself * value.abs()).filter(|error| error.is_finite()),
+                Err(gap) => {
+                    reason = Some(gap);
+                    None
+                }
+            }
+        });
+        let assumed = PROMISED.map(|promised| {
+            let value = cells.number(promised.measure)?;
+            Some(table.assumed(&features, &promised)? * value.abs())
+        });
+        Self { errors, assumed, reason }
+    }
+
+    /// Uncertainty of a value of this row.
+    pub fn uncertainty(&self, measure: ColumnId, cells: &Cells) -> Option<f64> {
+        let near = *cells.get(ColumnId::NearThreshold) == Value::Bool(true);
+        let parts = |index: usize| [self.errors[index], self.assumed[index]];
+        uncertainty(measure, near, self.reason.as_deref(), parts)
+    }
+}
+
+/// Uncertainty of a value of a row, SI: `None` where it is not known.
+///
+/// ```text
+/// u² = e² + a²      e: mesh error;  a: change over the ranges of the assumed values
+/// ```
+/// A verdict has none, or an infinite one near a threshold; what depends on no mesh has none. `parts` are e and a of a
+/// promised measure, by its position; `reason` says why a row has no mesh errors.
+pub fn uncertainty(
+    measure: ColumnId,
+    near_threshold: bool,
+    reason: Option<&str>,
+    parts: impl Fn(usize) -> [Option<f64>; 2],
+) -> Option<f64> {
+    let column = measure.column();
+    if measure == ColumnId::Verdict {
+        let known = reason.is_none_or(|reason| reason == NOT_DEPLOYED);
+        return known.then_some(if near_threshold { f64::INFINITY } else { 0.0 });
+    }
+    let of_motion = matches!(column.group, ColumnGroup::Measures | ColumnGroup::Outcome);
+    if column.cell_type != CellType::Number || !of_motion {
+        return Some(0.0);
+    }
+    let promised = promise(column.name)?;
+    let [error, assumed] = parts(PROMISED.iter().position(|one| one == promised)?);
+    Some(libm::hypot(error?, assumed.unwrap_or(0.0)))
+}
+
+/// Why rows of a model without mesh have no error, though the table knows it.
+fn of_another_model(method: &Method) -> String {
+    format!(
+        "the error columns are those of film, not of {}; billow plan STUDY --accuracy names a method that keeps an error",
+        method.name()
+    )
+}
+
+/// Why the state at the end of some runs has no error.
+pub const NOT_DEPLOYED: &str = "not deployed: final_z_rim and final_volume have a mesh error only where the capsule is deployed";
+
+#[cfg(test)]
+mod tests {
+
+    use billow_solver::scene::Stepping;
+
+    use super::*;
+
+    /// The errors of a row of the paper's capsule, computed by a model.
+    fn of_row(model: ModelKind, stepping: Stepping) -> RowErrors {
+        let mut scene = crate::accuracy::tests::covered();
+        scene.design.subdivisions = 4;
+        scene.solver.model = model;
+        scene.solver.stepping = stepping;
+        let mut cells = Cells::new(Status::Done);
+        cells.set(ColumnId::TopRadius, 0.365);
+        cells.set(ColumnId::Height, 1.0);
+        cells.set(ColumnId::T90ZRim, 0.2);
+        cells.set(ColumnId::Verdict, "deployed");
+        RowErrors::of(&scene, &cells)
+    }
+
+    #[test]
+    fn rows_of_film_have_errors_and_rows_of_another_model_say_where_theirs_are() {
+        let film = of_row(ModelKind::Film, Stepping::Stable(0.45));
+        assert!(film.errors[1].is_some_and(|error| error > 0.0 && error < 0.2));
+        assert_eq!(film.reason, None);
+        let said = |model: &str| {
+            format!(
+                "the error columns are those of film, not of {model}; billow plan STUDY --accuracy names a method that keeps an error"
+            )
+        };
+        let piston = of_row(ModelKind::Piston, Stepping::Adaptive(1e-9));
+        assert_eq!((piston.errors, piston.reason), (RowErrors::NONE.errors, Some(said("piston"))));
+        let storeys = of_row(ModelKind::Storeys, Stepping::Stable(0.45));
+        assert_eq!(storeys.errors, RowErrors::NONE.errors);
+        assert_eq!(storeys.reason, Some(said("storeys")));
+        // Where the table has no error of the model either, the reason is that.
+        let outside = of_row(ModelKind::Storeys, Stepping::Stable(0.2));
+        assert_eq!(outside.errors, RowErrors::NONE.errors);
+        assert_eq!(
+            outside.reason.as_deref(),
+            Some("solver.cfl 0.2: the runs of the table have 0.45")
+        );
+    }
+}

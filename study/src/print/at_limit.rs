@@ -1,0 +1,60 @@
+//! A limit in words: the value with its uncertainty and the parts of it, and how far it is from the limit.
+
+use std::fmt::Write as _;
+
+use crate::analysis::at_limit::AtLimit;
+use crate::input::value::{Value, brief_number};
+use crate::job::result_limit::{Condition, Judged, Safety};
+
+/// The value, as in `peak_vz 18.6 ± 1.4 m/s (mesh 1.3, assumed 0.4), 7 % below 20 m/s`. `seeds` are the least and the
+/// largest value of several runs, SI.
+pub fn at_limit(one: &AtLimit, seeds: Option<[f64; 2]>) -> String {
+    let name = one.limit.measure.name();
+    let Value::Number(value) = one.value else {
+        return match (&one.value, one.judged) {
+            (Value::Null, _) => format!("{name} has no value, asked {}", one.limit.text),
+            (word, judged) => format!("{name} {word}, asked {}{}", one.limit.text, doubt(judged)),
+        };
+    };
+    let (unit, difference) = (&one.shown, one.shown.of_difference());
+    let brief = |number: f64| brief_number(difference.number(number));
+    let [mesh, assumed] = one.parts;
+    let mut text = format!("{name} {}", brief_number(unit.number(value)));
+    if let Some(mesh) = mesh {
+        let _ = write!(text, " ± {}", brief(libm::hypot(mesh, assumed.unwrap_or(0.0))));
+    }
+    if !unit.symbol().is_empty() {
+        let _ = write!(text, " {}", unit.symbol());
+    }
+    let mut parts: Vec<String> = Vec::new();
+    parts.extend(mesh.map(|mesh| format!("mesh {}", brief(mesh))));
+    parts.extend(mesh.and(assumed).map(|assumed| format!("assumed {}", brief(assumed))));
+    let [least, largest] = seeds.unwrap_or([value; 2]);
+    if least < largest {
+        let [least, largest] = [least, largest].map(|end| brief_number(unit.number(end)));
+        parts.push(format!("seeds {least} to {largest}"));
+    }
+    if !parts.is_empty() {
+        let _ = write!(text, " ({})", parts.join(", "));
+    }
+    if let (Condition::Bound { bound, .. }, Some(judged)) = (&one.limit.condition, one.judged) {
+        let side = if value < *bound { "below" } else { "above" };
+        let limit = unit.brief(*bound);
+        let distance = if *bound == 0.0 {
+            difference.brief(value.abs())
+        } else {
+            format!("{} %", brief_number(100.0 * judged.margin.abs()))
+        };
+        let _ = write!(text, ", {distance} {side} {limit}{}", doubt(one.judged));
+    }
+    text
+}
+
+/// What is to be known of a value that is near its limit, or whose error is not known.
+fn doubt(judged: Option<Judged>) -> &'static str {
+    match judged {
+        Some(Judged { uncertainty: None, .. }) => "; its error is not known",
+        Some(judged) if judged.safety() == Safety::Uncertain => "; within its uncertainty",
+        _ => "",
+    }
+}
