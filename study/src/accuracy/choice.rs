@@ -12,11 +12,13 @@ use billow_solver::integrators::dormand_prince::DEFAULT_TOLERANCE;
 use billow_solver::models;
 use billow_solver::scene::{ModelKind, Scene, Stepping};
 
-use super::entry::{Entry, Method};
+use super::entry::Method;
 use super::features::{FEATURES, Features, STEP};
 use super::promised::PROMISED;
 use super::table::MeshErrors;
 
+/// Subdivisions of the mesh whose run costs 1.
+const COST_MESH: f64 = 24.0;
 /// Cost of a run of the piston. Measured: seconds over those of film on 24 subdivisions, results/pareto.
 const PISTON_COST: f64 = 1.4e-5;
 /// Cost of a run of storeys, measured alike.
@@ -63,7 +65,7 @@ impl Choice {
 /// Cost of a method over that of film on 24 subdivisions.
 pub fn cost(method: &Method) -> f64 {
     let of_mesh = |n: &u32| {
-        let ratio = f64::from(*n) / 24.0;
+        let ratio = f64::from(*n) / COST_MESH;
         ratio * ratio * ratio
     };
     match method.model {
@@ -125,9 +127,7 @@ pub fn choices(table: &MeshErrors, scenes: &[(&Scene, Features)]) -> Result<Vec<
     let distinct = distinct(table, scenes)?;
     let refusals = [ModelKind::Piston, ModelKind::Storeys, ModelKind::Film]
         .map(|model| (model, scenes.iter().find_map(|(scene, _)| refusal(model, scene))));
-    let of_measure =
-        |entry: &&Entry| entry.assumed.is_empty() && entry.measure == PROMISED[0].measure.name();
-    let methods = table.errors.iter().filter(of_measure);
+    let methods = table.of_measure(PROMISED[0].measure.name()).iter();
     let methods = methods.map(|entry| Method { model: entry.model, meshes: entry.meshes.clone() });
     let mut choices: Vec<Choice> = methods
         .map(|method| {

@@ -9,7 +9,6 @@
 use billow_solver::scene::{ModelKind, Scene};
 use serde::{Deserialize, Serialize};
 
-use super::coordinates::Coordinates;
 use super::features::FEATURES;
 use crate::input::keys;
 
@@ -22,16 +21,10 @@ pub struct RelativeError {
     pub of_itself: f64,
 }
 
-/// The error of one measure, for one model and mesh.
+/// The error of one measure, for one model and mesh; or its change with an assumed value, on the one mesh.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Entry {
-    /// Measure.
-    pub measure: String,
-    /// The assumed value that was changed, as in `film.loss_factor 0.003`: then the bias is the change that it causes, on
-    /// the one mesh. Absent for errors of a mesh.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub assumed: String,
     /// Model.
     pub model: ModelKind,
     /// Subdivisions: of one mesh, or of the two meshes of an extrapolated value; none for a model without mesh.
@@ -57,15 +50,14 @@ fn is_zero(number: &f64) -> bool {
 }
 
 impl Entry {
-    /// Bias of a scene.
-    pub fn bias(&self, values: &[f64; FEATURES], coordinates: &Coordinates) -> f64 {
-        let u = coordinates.of(values);
+    /// Bias of a scene with these coordinates.
+    pub fn bias(&self, u: &[f64; FEATURES]) -> f64 {
         self.bias + self.slopes.iter().zip(u).map(|(slope, u)| slope * u).sum::<f64>()
     }
 
-    /// The error of nine of ten runs of a scene.
-    pub fn error(&self, values: &[f64; FEATURES], coordinates: &Coordinates) -> RelativeError {
-        let (bias, width) = (self.bias(values, coordinates), self.width);
+    /// The error of nine of ten runs of a scene with these coordinates.
+    pub fn error(&self, u: &[f64; FEATURES]) -> RelativeError {
+        let (bias, width) = (self.bias(u), self.width);
         let end = |side: f64| (bias + side * width).abs() / (1.0 + bias + side * width);
         // Below the value 0 nothing is known of a ratio.
         let of_itself = if bias - width > -1.0 { end(-1.0).max(end(1.0)) } else { f64::INFINITY };

@@ -40,8 +40,10 @@ pub struct MeshErrors {
     pub coverage: Coverage,
     /// The coordinates of the biases.
     pub coordinates: Coordinates,
-    /// The errors.
-    pub errors: Vec<Entry>,
+    /// The errors, by measure.
+    pub errors: BTreeMap<String, Vec<Entry>>,
+    /// The changes with each assumed value, as in `film.loss_factor 0.003`, by measure and by that value.
+    pub assumed: BTreeMap<String, BTreeMap<String, Entry>>,
 }
 
 impl MeshErrors {
@@ -57,7 +59,7 @@ impl MeshErrors {
 
     /// The meshes of which it has errors, coarsest first.
     pub fn meshes(&self) -> Vec<u32> {
-        let single = self.errors.iter().filter_map(|entry| match entry.meshes[..] {
+        let single = self.errors.values().flatten().filter_map(|entry| match entry.meshes[..] {
             [n] => Some(n),
             _ => None,
         });
@@ -83,16 +85,13 @@ impl MeshErrors {
         promised: &Promised,
     ) -> Result<RelativeError, String> {
         let measure = promised.measure.name();
-        let of_entry = |entry: &Entry| entry.error(&features.values, &self.coordinates);
+        let u = self.coordinates.of(&features.values);
         if let Some(entry) = self.entry(method, measure) {
-            return Ok(of_entry(entry));
+            return Ok(entry.error(&u));
         }
         let no_runs = || format!("{}: the table has no such runs", method.name());
         let [n] = method.meshes[..] else { return Err(no_runs()) };
-        let of_model = |entry: &&Entry| {
-            entry.model == method.model && entry.measure == measure && entry.assumed.is_empty()
-        };
-        let known = self.errors.iter().filter(of_model);
+        let known = self.of_measure(measure).iter().filter(|entry| entry.model == method.model);
         let known = known.filter_map(|entry| match entry.meshes[..] {
             [mesh] => Some((mesh, entry)),
             _ => None,
@@ -104,7 +103,7 @@ impl MeshErrors {
         if let (Some((coarse, coarse_entry)), Some((fine, fine_entry))) = (below, above) {
             let log = |mesh: u32| libm::log(f64::from(mesh));
             let part = (log(n) - log(*coarse)) / (log(*fine) - log(*coarse));
-            let [coarse, fine] = [coarse_entry, fine_entry].map(|entry| of_entry(entry));
+            let [coarse, fine] = [coarse_entry, fine_entry].map(|entry| entry.error(&u));
             let between = |coarse: f64, fine: f64| coarse + part * (fine - coarse);
             return Ok(RelativeError {
                 of_reference: between(coarse.of_reference, fine.of_reference),
@@ -113,7 +112,7 @@ impl MeshErrors {
         }
         match (known.first(), below) {
             // A finer mesh than those of the table keeps the error of its finest.
-            (_, Some((_, finest))) => Ok(of_entry(finest)),
+            (_, Some((_, finest))) => Ok(finest.error(&u)),
             (Some((first, _)), None) => {
                 Err(format!("design.subdivisions {n}: the table has {first} and finer meshes"))
             }
@@ -128,27 +127,25 @@ impl MeshErrors {
     /// a² = Σ over the assumed values of (the largest change at its two ends)²
     /// ```
     pub fn assumed(&self, features: &Features, promised: &Promised) -> Option<f64> {
-        let is =
-            |entry: &&Entry| !entry.assumed.is_empty() && entry.measure == promised.measure.name();
+        let u = self.coordinates.of(&features.values);
         let mut largest: BTreeMap<&str, f64> = BTreeMap::new();
-        for entry in self.errors.iter().filter(is) {
-            let key = entry.assumed.split(' ').next().unwrap_or_default();
-            let change = entry.error(&features.values, &self.coordinates).of_reference;
+        for (value, entry) in self.assumed.get(promised.measure.name())? {
+            let key = value.split(' ').next().unwrap_or_default();
             let known = largest.entry(key).or_insert(0.0);
-            *known = known.max(change);
+            *known = known.max(entry.error(&u).of_reference);
         }
         let squares: f64 = largest.values().map(|change| change * change).sum();
-        (!largest.is_empty()).then(|| squares.sqrt())
+        Some(squares.sqrt())
     }
 
     /// The entry of a method, as it stands in the table.
     pub fn entry(&self, method: &Method, measure: &str) -> Option<&Entry> {
-        let is = |entry: &&Entry| {
-            entry.assumed.is_empty()
-                && entry.model == method.model
-                && entry.meshes == method.meshes
-                && entry.measure == measure
-        };
-        self.errors.iter().find(is)
+        let is = |entry: &&Entry| entry.model == method.model && entry.meshes == method.meshes;
+        self.of_measure(measure).iter().find(is)
+    }
+
+    /// The entries of a measure.
+    pub fn of_measure(&self, measure: &str) -> &[Entry] {
+        self.errors.get(measure).map_or(&[], Vec::as_slice)
     }
 }

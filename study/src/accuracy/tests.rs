@@ -1,5 +1,7 @@
 //! Kinds of scenes, coverage, interpolation between meshes, and the table that the program contains.
 
+use std::collections::BTreeMap;
+
 use billow_solver::scene::paper::{capsule, window};
 use billow_solver::scene::{ModelKind, Scene, Stepping};
 
@@ -154,8 +156,6 @@ fn table() -> MeshErrors {
     let mut slopes = [0.0; FEATURES];
     slopes[1] = 0.04 / libm::log(1.5);
     let entry = |n: u32, error: f64| Entry {
-        measure: "t_90_z_rim".to_owned(),
-        assumed: String::new(),
         model: ModelKind::Film,
         meshes: vec![n],
         weight: 0.0,
@@ -173,7 +173,8 @@ fn table() -> MeshErrors {
         reference: 24,
         coverage: Coverage::of([(&base, features(&base))]).unwrap(),
         coordinates: Coordinates { base: features(&base).values, half: [0.0; FEATURES] },
-        errors: vec![entry(16, 0.02), entry(4, 0.08)],
+        errors: [("t_90_z_rim".to_owned(), vec![entry(16, 0.02), entry(4, 0.08)])].into(),
+        assumed: BTreeMap::new(),
     }
 }
 
@@ -205,7 +206,7 @@ fn a_feature_changes_the_bias_and_deviations_make_the_error_wider() {
     assert!((error.of_reference - 0.12).abs() < 1e-12, "{error:?}");
     // The value is 12 % too small: it lacks 12/88 of itself.
     assert!((error.of_itself - 0.12 / 0.88).abs() < 1e-12, "{error:?}");
-    for entry in &mut table.errors {
+    for entry in table.errors.values_mut().flatten() {
         entry.width = 0.05;
     }
     let error = table.error(&method, &features(&two_storeys), promised).unwrap();
@@ -221,14 +222,13 @@ fn the_worst_end_of_each_assumed_value_counts() {
     let changes = [
         ("film.loss_factor 0.003", 0.01),
         ("film.loss_factor 0.03", -0.03),
-        ("gas.heat_transfer adiabatic", 0.04),
+        ("gas.heat_transfer 1", 0.04),
     ];
-    let changed = |(assumed, bias): (&str, f64)| {
-        let slopes = [0.0; FEATURES];
-        Entry { assumed: assumed.to_owned(), bias, slopes, ..table.errors[1].clone() }
-    };
-    let more = changes.map(changed);
-    table.errors.extend(more);
+    let of_mesh = table.of_measure("t_90_z_rim")[1].clone();
+    let changed = changes.map(|(assumed, bias)| {
+        (assumed.to_owned(), Entry { bias, slopes: [0.0; FEATURES], ..of_mesh.clone() })
+    });
+    table.assumed.insert("t_90_z_rim".to_owned(), changed.into());
     let assumed = table.assumed(&features(&scene()), promised).unwrap();
     assert!((assumed - 0.05).abs() < 1e-12, "{assumed}");
 }
@@ -282,14 +282,11 @@ fn a_model_that_cannot_compute_a_scene_keeps_nothing() {
     held.supports[1].on = billow_solver::scene::SupportLocation::TopRing;
     let mut table = table();
     table.coverage = Coverage::of([(&held, features(&held))]).unwrap();
-    let mut entries = table.errors;
-    let meshless = |model| Entry { model, meshes: Vec::new(), ..entries[0].clone() };
-    let more = [ModelKind::Piston, ModelKind::Storeys].map(meshless);
-    entries.extend(more);
-    let of_all = entries.iter().flat_map(|entry| {
-        PROMISED.map(|of| Entry { measure: of.measure.name().to_owned(), ..entry.clone() })
-    });
-    table.errors = of_all.collect();
+    let film = table.of_measure("t_90_z_rim").to_vec();
+    let meshless = |model| Entry { model, meshes: Vec::new(), ..film[0].clone() };
+    let entries =
+        [film.clone(), [ModelKind::Piston, ModelKind::Storeys].map(meshless).to_vec()].concat();
+    table.errors = PROMISED.map(|of| (of.measure.name().to_owned(), entries.clone())).into();
     let choices = choices(&table, &[(&held, features(&held))]).unwrap();
     let keeps = |model: ModelKind| {
         let choice = choices.iter().find(|choice| choice.method.model == model).unwrap();

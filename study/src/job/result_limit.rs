@@ -191,8 +191,8 @@ pub struct AllJudged {
 }
 
 impl AllJudged {
-    /// The safety of a row; `value` gives the cell of a column, `uncertainty` that of its value. `None` without limits, for a job that is not
-    /// done, and where a measure has no value unless another limit is missed: nothing is known then.
+    /// The safety of a row; `value` gives the cell of a column, `uncertainty` that of its value. `None` without limits,
+    /// for a job that is not done, and where a measure has no value unless another limit is missed.
     pub fn of<'v>(
         limits: &[ResultLimit],
         status: Status,

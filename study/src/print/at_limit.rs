@@ -5,9 +5,10 @@ use std::fmt::Write as _;
 use crate::analysis::at_limit::AtLimit;
 use crate::input::value::{Value, brief_number};
 use crate::job::result_limit::{Condition, Judged, Safety};
+use crate::print::range;
 
-/// The value, as in `peak_vz 18.6 ± 1.4 m/s (mesh 1.3, assumed 0.4), 7 % below 20 m/s`. `seeds` are the least and the
-/// largest value of several runs, SI.
+/// The value, as in `peak_vz 18.6 ± 1.4 m/s (mesh 1.3, assumed 0.4), 7 % below 20 m/s`; with the least and the largest
+/// value over the `seeds`, SI, as in a table: `18.6 [18.1 to 18.9] ± 1.4 m/s`.
 pub fn at_limit(one: &AtLimit, seeds: Option<[f64; 2]>) -> String {
     let name = one.limit.measure.name();
     let Value::Number(value) = one.value else {
@@ -17,25 +18,14 @@ pub fn at_limit(one: &AtLimit, seeds: Option<[f64; 2]>) -> String {
         };
     };
     let (unit, difference) = (&one.shown, one.shown.of_difference());
-    let brief = |number: f64| brief_number(difference.number(number));
     let [mesh, assumed] = one.parts;
-    let mut text = format!("{name} {}", brief_number(unit.number(value)));
-    if let Some(mesh) = mesh {
-        let _ = write!(text, " ± {}", brief(libm::hypot(mesh, assumed.unwrap_or(0.0))));
-    }
-    if !unit.symbol().is_empty() {
-        let _ = write!(text, " {}", unit.symbol());
-    }
-    let mut parts: Vec<String> = Vec::new();
-    parts.extend(mesh.map(|mesh| format!("mesh {}", brief(mesh))));
-    parts.extend(mesh.and(assumed).map(|assumed| format!("assumed {}", brief(assumed))));
-    let [least, largest] = seeds.unwrap_or([value; 2]);
-    if least < largest {
-        let [least, largest] = [least, largest].map(|end| brief_number(unit.number(end)));
-        parts.push(format!("seeds {least} to {largest}"));
-    }
-    if !parts.is_empty() {
-        let _ = write!(text, " ({})", parts.join(", "));
+    let error = mesh.map(|mesh| libm::hypot(mesh, assumed.unwrap_or(0.0)));
+    let ends = seeds.map(|[least, largest]| (least, largest));
+    let mut text = format!("{name} {} {}", range::text(value, ends, error, unit), unit.symbol());
+    text.truncate(text.trim_end().len());
+    if let (Some(mesh), Some(assumed)) = (mesh, assumed) {
+        let [mesh, assumed] = [mesh, assumed].map(|part| brief_number(difference.number(part)));
+        let _ = write!(text, " (mesh {mesh}, assumed {assumed})");
     }
     if let (Condition::Bound { bound, .. }, Some(judged)) = (&one.limit.condition, one.judged) {
         let side = if value < *bound { "below" } else { "above" };

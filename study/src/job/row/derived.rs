@@ -49,8 +49,8 @@ pub static DERIVED_COLUMNS: [DerivedRow; 4] = [
         name: "safety",
         cell_type: CellType::Text,
         unit: "",
-        meaning: "safe: every limit is met, by more than the uncertainty of its measure; unsafe: one is missed by more, or \
-                  the uncertainty is not known; uncertain: neither can be said. Null where a measure has no value, or \
+        meaning: "safe: every limit is met, by more than the uncertainty of its measure; unsafe: one is missed by more, or missed \
+                  with an uncertainty that is not known; uncertain: neither can be said. Null where a measure has no value, or \
                   without limits",
     },
     DerivedRow {

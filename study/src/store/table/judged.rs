@@ -15,8 +15,8 @@ use crate::job::result_limit::{AllJudged, Judged, ResultLimit, Safety};
 use crate::job::row::{CellType, ColumnId, DerivedColumn, SAME_JOB_AS};
 
 impl Table {
-    /// The table with the columns of these limits (extrapolated values count, where there are any), and with `verdict_depends_on` where the study varies a
-    /// numerical choice.
+    /// The table with the columns of these limits (extrapolated values count, where there are any), and with
+    /// `verdict_depends_on` where the study varies a numerical choice.
     #[must_use]
     pub fn judged(mut self, limits: &[ResultLimit]) -> Self {
         let mut new = Vec::new();
@@ -59,7 +59,7 @@ impl Table {
         limit.judge(self.status(row)?, value, self.uncertainty(limit.measure, row))
     }
 
-    /// The word of the column `safe`.
+    /// What the column `safety` says of a row.
     pub fn safety(&self, row: usize) -> Option<Safety> {
         Safety::of_cell(&self.column(DerivedColumn::Safety.name())?.cells[row])
     }

@@ -58,7 +58,7 @@ pub(super) fn calibrate(
     let unchanged = all().filter(|run| run.assumed().is_empty());
     let coverage = Coverage::of(unchanged.map(|run| (&run.scene, run.features)))?;
     let coordinates = coordinates(&scenes);
-    let mut errors = Vec::new();
+    let (mut errors, mut assumed) = (BTreeMap::new(), BTreeMap::new());
     let next = all().filter_map(|run| match run.mesh() {
         (ModelKind::Film, n) if n < reference => Some(n),
         _ => None,
@@ -83,7 +83,9 @@ pub(super) fn calibrate(
         };
         let of_measure: Vec<Scene> =
             scenes.iter().filter_map(|scene| Scene::of(scene, measure, finest(scene)?)).collect();
-        errors.extend(entries(&of_measure, measure, &coordinates, reference));
+        let (of_meshes, changes) = entries(&of_measure, &coordinates, reference);
+        errors.insert(measure.name().to_owned(), of_meshes);
+        assumed.insert(measure.name().to_owned(), changes);
     }
     Some(MeshErrors {
         format: FORMAT.to_owned(),
@@ -94,6 +96,7 @@ pub(super) fn calibrate(
         coverage,
         coordinates,
         errors,
+        assumed,
     })
 }
 
@@ -165,13 +168,12 @@ impl Scene {
     }
 }
 
-/// The entries of a measure: models without a mesh, each mesh, each pair of meshes, each assumed value.
+/// The entries of a measure: of models without a mesh, each mesh, each pair of meshes; and of each assumed value.
 fn entries(
     scenes: &[Scene],
-    measure: ColumnId,
     coordinates: &Coordinates,
     reference: u32,
-) -> Vec<Entry> {
+) -> (Vec<Entry>, BTreeMap<String, Entry>) {
     let kinds: BTreeSet<&Kind> = scenes.iter().flat_map(|scene| scene.values.keys()).collect();
     let film = |kind: &&&Kind| kind.1 == ModelKind::Film as u8 && kind.2 < reference;
     let (unchanged, changed): (Vec<&Kind>, Vec<&Kind>) =
@@ -185,7 +187,6 @@ fn entries(
     for (index, coarse) in meshes.iter().enumerate() {
         methods.extend(meshes[index + 1..].iter().map(|fine| of_film(vec![*coarse, *fine])));
     }
-    methods.extend(changed.iter().map(|kind| (kind.0.clone(), ModelKind::Film, vec![kind.2])));
     let entry = |method: &Method| {
         let weight = weight(scenes, method);
         let of_scene = |scene: &Scene| {
@@ -204,8 +205,6 @@ fn entries(
         let distances =
             distances.flat_map(|(values, at)| values.iter().map(move |value| (value - at).abs()));
         Some(Entry {
-            measure: measure.name().to_owned(),
-            assumed: method.0.clone(),
             model: method.1,
             meshes: method.2.clone(),
             weight: rounded(weight),
@@ -216,7 +215,11 @@ fn entries(
             scenes: points.len(),
         })
     };
-    methods.iter().filter_map(entry).collect()
+    let change = |kind: &Kind| {
+        Some((kind.0.clone(), entry(&(kind.0.clone(), ModelKind::Film, vec![kind.2]))?))
+    };
+    let changes = changed.into_iter().filter_map(change).collect();
+    (methods.iter().filter_map(entry).collect(), changes)
 }
 
 /// A number to four digits: what more would say is noise.

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use billow_study::accuracy::{MeshErrors, PROMISED};
+use billow_study::accuracy::PROMISED;
 use billow_study::cli::options::ResultsOption;
 use billow_study::cli::results::{self, StudyArgs};
 use billow_study::input::value::Value;
@@ -63,23 +63,34 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         let problem = "no scene has this mesh";
         return Err(Error::invalid_option("--reference", &value, problem, allowed, ""));
     };
-    let text = text(&table);
+    let text = serde_json::to_value(&table).map(|table| lines(&table, LINE_DEPTH) + "\n");
+    let text = text.unwrap_or_default();
     write_output(&Disk, path, text.as_bytes()).map_err(|error| disk_error(path, &error))?;
-    let errors = &table.errors;
-    let scenes = errors.iter().map(|entry| entry.scenes).max().unwrap_or(0);
-    let path = path.display();
-    args.options.note(&format!("{path}: {} errors, of up to {scenes} scenes", errors.len()));
+    let errors = || table.errors.values().flatten();
+    let scenes = errors().map(|entry| entry.scenes).max().unwrap_or(0);
+    let (path, count) = (path.display(), errors().count());
+    args.options.note(&format!("{path}: {count} errors, of up to {scenes} scenes"));
     Ok(())
 }
 
-/// The table as a file: one line per error.
-fn text(table: &MeshErrors) -> String {
-    let lines = table.errors.iter().filter_map(|entry| serde_json::to_string(entry).ok());
-    let lines = lines.collect::<Vec<_>>().join(",\n");
-    let head = MeshErrors { errors: Vec::new(), ..table.clone() };
-    let head = serde_json::to_string_pretty(&head).unwrap_or_default();
-    head.replace("\"errors\": []", &format!("\"errors\": [\n{lines}\n]")) + "\n"
+/// A value as JSON text, with a line for each value down to a depth, and one for what lies below.
+fn lines(value: &serde_json::Value, depth: usize) -> String {
+    let inner: Vec<String> = match value {
+        serde_json::Value::Object(object) if depth > 0 => object
+            .iter()
+            .map(|(key, value)| format!("{key:?}: {}", lines(value, depth - 1)))
+            .collect(),
+        serde_json::Value::Array(array) if depth > 0 => {
+            array.iter().map(|value| lines(value, depth - 1)).collect()
+        }
+        _ => return value.to_string(),
+    };
+    let [open, close] = if value.is_object() { ['{', '}'] } else { ['[', ']'] };
+    format!("{open}\n{}\n{close}", inner.join(",\n"))
 }
+
+/// Depth of the table at which an error is one line.
+const LINE_DEPTH: usize = 3;
 
 const COLUMNS: [&str; 9] =
     ["scene", "measure", "unit", "meshes", "finest", "limit", "change", "uncertainty", "order"];
