@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! b(x) = b_base + Σ_f s_f u_f(x)       u_f: coordinate of the feature f, [`super::coordinates`]
-//! error = |b(x)| + w      w: the distance from b(x) that nine of ten runs keep, of scenes that were left out
+//! error = |b(x)| + w      w: the distance from b(x) that 19 of 20 runs keep, of scenes that were left out
 //! over the value itself:  the larger of |b ± w|/(1 + b ± w)      (the value is 1 + b ± w of that on the finest mesh)
 //! ```
 
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::features::FEATURES;
 use crate::input::keys;
 
-/// An error that nine of ten runs keep.
+/// An error that 19 of 20 runs keep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RelativeError {
     /// Over the value on the finest mesh.
@@ -36,7 +36,7 @@ pub struct Entry {
     pub bias: f64,
     /// Change of the bias with the coordinate of each feature.
     pub slopes: [f64; FEATURES],
-    /// w: the distance of a run from the bias of its scene that nine of ten keep; of a pair of meshes or a change likewise.
+    /// w: the distance of a run from the bias of its scene that 19 of 20 keep; of a pair of meshes or a change likewise.
     pub width: f64,
     /// Number of runs.
     pub runs: usize,
@@ -55,7 +55,7 @@ impl Entry {
         self.bias + self.slopes.iter().zip(u).map(|(slope, u)| slope * u).sum::<f64>()
     }
 
-    /// The error of nine of ten runs of a scene with these coordinates.
+    /// The error of 19 of 20 runs of a scene with these coordinates.
     pub fn error(&self, u: &[f64; FEATURES]) -> RelativeError {
         let (bias, width) = (self.bias(u), self.width);
         let end = |side: f64| (bias + side * width).abs() / (1.0 + bias + side * width);

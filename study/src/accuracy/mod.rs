@@ -4,6 +4,7 @@
 //! entries of every model; rows carry those of film, `billow plan --accuracy` names them all. No clock and no machine
 //! has a part in it, so a choice that reads it is the same everywhere.
 
+pub mod assumed;
 pub mod choice;
 pub mod coordinates;
 pub mod entry;
@@ -14,6 +15,7 @@ pub mod table;
 #[cfg(test)]
 mod tests;
 
+pub use assumed::{ASSUMED_KEYS, AssumedRanges, assumed_value};
 pub use choice::{Choice, choice, choices};
 pub use coordinates::Coordinates;
 pub use entry::{Entry, Method, RelativeError};
@@ -21,5 +23,5 @@ pub use features::{Coverage, Features};
 pub use promised::{
     NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED, Promised, error_column, is_error_column,
 };
-pub use row::{NOT_DEPLOYED, RowErrors};
+pub use row::{RowErrors, is_of_pilots, is_unknown, of_pilots};
 pub use table::MeshErrors;

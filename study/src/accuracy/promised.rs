@@ -48,7 +48,9 @@ pub const PROMISED: [Promised; 13] = [
 /// Name of the column that says why a row has no mesh errors.
 pub const NO_ERROR_REASON: &str = "no_error_reason";
 /// Meaning of that column, one line.
-pub const NO_ERROR_REASON_MEANING: &str = "why the table of mesh errors has none for this row: what its scene has that the runs of the table have not, or a model other than film; values extrapolated from three meshes have an error all the same";
+pub const NO_ERROR_REASON_MEANING: &str = "why the table of mesh errors has none for this row: what its scene has that \
+     the runs of the table have not, or a model other than film; values extrapolated from three meshes have an error all \
+     the same, and rows with the largest error of the pilots say so";
 
 impl Promised {
     /// Whether it is the state at the end of a run: it has a mesh error only where the capsule is deployed.
@@ -61,10 +63,10 @@ impl Promised {
         let measure = self.measure.name();
         let finest = MeshErrors::shipped().reference;
         let error = format!(
-            "mesh error of {measure}: 9 of 10 runs are nearer to the value on n {finest}; null where it is not known (no_error_reason)"
+            "mesh error of {measure}: 19 of 20 runs are nearer to the value on n {finest}; null where it is not known (no_error_reason)"
         );
         let assumed = format!(
-            "change of {measure} over the ranges of the assumed values: film.loss_factor 0.003 to 0.03, gas.heat_transfer 0.1 to 1 W/(m2 K); null where it is not known"
+            "change of {measure} over the ranges of what is assumed (key assumed): film.loss_factor and gas.heat_transfer; null where it is not known"
         );
         [(self.error_column, error), (self.assumed_column, assumed)]
     }

@@ -4,7 +4,7 @@ use billow_solver::output::measures::Verdict;
 use billow_solver::scene::{ModelKind, Scene};
 
 use super::promised::{PROMISED, promise};
-use super::{Features, MeshErrors, Method};
+use super::{AssumedRanges, Features, MeshErrors, Method};
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::row::{CellType, Cells, ColumnGroup, ColumnId};
@@ -24,8 +24,8 @@ impl RowErrors {
     pub const NONE: Self =
         Self { errors: [None; PROMISED.len()], assumed: [None; PROMISED.len()], reason: None };
 
-    /// Those of the row of a job.
-    pub fn of(scene: &Scene, cells: &Cells) -> Self {
+    /// Those of the row of a job, with what is assumed in these ranges.
+    pub fn of(scene: &Scene, cells: &Cells, ranges: &AssumedRanges) -> Self {
         if cells.status() != Status::Done {
             return Self::NONE;
         }
@@ -66,7 +66,7 @@ impl RowErrors {
         });
         let assumed = PROMISED.map(|promised| {
             let value = cells.number(promised.measure)?;
-            Some(table.assumed(&features, &promised)? * value.abs())
+            Some(table.assumed(&features, &promised, ranges)? * value.abs())
         });
         Self { errors, assumed, reason }
     }
@@ -94,7 +94,8 @@ pub fn uncertainty(
 ) -> Option<f64> {
     let column = measure.column();
     if measure == ColumnId::Verdict {
-        let known = reason.is_none_or(|reason| reason == NOT_DEPLOYED);
+        let known =
+            reason.is_none_or(|reason| !is_unknown(reason) && !reason.contains(VERDICTS_DIFFER));
         return known.then_some(if near_threshold { f64::INFINITY } else { 0.0 });
     }
     let of_motion = matches!(column.group, ColumnGroup::Measures | ColumnGroup::Outcome);
@@ -115,7 +116,31 @@ fn of_another_model(method: &Method) -> String {
 }
 
 /// Why the state at the end of some runs has no error.
-pub const NOT_DEPLOYED: &str = "not deployed: final_z_rim and final_volume have a mesh error only where the capsule is deployed";
+const NOT_DEPLOYED: &str = "not deployed: final_z_rim and final_volume have a mesh error only where the capsule is deployed";
+
+/// What stands before the reason of a row that has the errors of pilots.
+const OF_PILOTS: &str = "the largest error of the pilots";
+
+/// What is in it where the verdict of a pilot is not the same on its meshes.
+const VERDICTS_DIFFER: &str = ", whose verdicts differ";
+
+/// The reason of a row that has the errors of pilots on these meshes; `gap`: why the table has none, `verdicts_agree`:
+/// whether every pilot has one verdict on all its meshes.
+pub fn of_pilots(gap: &str, meshes: &[u32], verdicts_agree: bool) -> String {
+    let meshes: Vec<String> = meshes.iter().map(ToString::to_string).collect();
+    let differ = if verdicts_agree { "" } else { VERDICTS_DIFFER };
+    format!("{OF_PILOTS} (n {}){differ}; outside the table: {gap}", meshes.join(", "))
+}
+
+/// Whether a reason says that the mesh errors of a row are not known.
+pub fn is_unknown(reason: &str) -> bool {
+    reason != NOT_DEPLOYED && !is_of_pilots(reason)
+}
+
+/// Whether it says that pilots gave them.
+pub fn is_of_pilots(reason: &str) -> bool {
+    reason.starts_with(OF_PILOTS)
+}
 
 #[cfg(test)]
 mod tests {
@@ -135,7 +160,7 @@ mod tests {
         cells.set(ColumnId::Height, 1.0);
         cells.set(ColumnId::T90ZRim, 0.2);
         cells.set(ColumnId::Verdict, "deployed");
-        RowErrors::of(&scene, &cells)
+        RowErrors::of(&scene, &cells, &AssumedRanges::default())
     }
 
     #[test]

@@ -218,7 +218,7 @@ fn a_feature_changes_the_bias_and_deviations_make_the_error_wider() {
 fn the_worst_end_of_each_assumed_value_counts() {
     let mut table = table();
     let promised = promise("t_90_z_rim").unwrap();
-    assert_eq!(table.assumed(&features(&scene()), promised), None);
+    assert_eq!(table.assumed(&features(&scene()), promised, &AssumedRanges::default()), None);
     let changes = [
         ("film.loss_factor 0.003", 0.01),
         ("film.loss_factor 0.03", -0.03),
@@ -229,8 +229,12 @@ fn the_worst_end_of_each_assumed_value_counts() {
         (assumed.to_owned(), Entry { bias, slopes: [0.0; FEATURES], ..of_mesh.clone() })
     });
     table.assumed.insert("t_90_z_rim".to_owned(), changed.into());
-    let assumed = table.assumed(&features(&scene()), promised).unwrap();
+    let assumed = table.assumed(&features(&scene()), promised, &AssumedRanges::default()).unwrap();
     assert!((assumed - 0.05).abs() < 1e-12, "{assumed}");
+    // Half of the way from 0.3 to 1 in the logarithm, and no doubt about the loss.
+    let ranges = AssumedRanges([[0.015, 0.015], [0.3, libm::sqrt(0.3)]]);
+    let assumed = table.assumed(&features(&scene()), promised, &ranges).unwrap();
+    assert!((assumed - 0.02).abs() < 1e-12, "{assumed}");
 }
 
 #[test]
@@ -250,7 +254,8 @@ fn the_shipped_table_is_that_of_this_physics_and_agrees_with_the_names_of_the_co
                 assert!((1e-4..1.5).contains(&part), "{name} n {n}: {part}");
             }
         }
-        let assumed = table.assumed(&features(&paper), promised).unwrap();
+        let assumed =
+            table.assumed(&features(&paper), promised, &AssumedRanges::default()).unwrap();
         assert!((1e-5..1.0).contains(&assumed), "{name}: {assumed}");
     }
 }

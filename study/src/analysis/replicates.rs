@@ -23,6 +23,7 @@ use crate::job::proportion::Proportion;
 use crate::job::result_limit::Safety;
 use crate::job::row::{CellType, ColumnId, DerivedColumn, SAME_JOB_AS};
 use crate::store::table::{Column, Table, extrapolated};
+use crate::study::Meshes;
 
 /// A table with one row per point.
 #[derive(Debug, Clone, PartialEq)]
@@ -240,8 +241,8 @@ pub fn point_key(fixed: &[&Column], row: usize) -> Vec<String> {
 }
 
 /// Whether a replicate is the mesh, and values are extrapolated from these meshes: its runs repeat no point.
-pub fn is_mesh(name: &str, meshes: &[u32]) -> bool {
-    !meshes.is_empty() && name == MESH_PARAMETER
+pub fn is_mesh(name: &str, meshes: &Meshes) -> bool {
+    !meshes.list.is_empty() && name == MESH_PARAMETER
 }
 
 /// The rows of each point, one row per job, in the order of their first rows.

@@ -8,6 +8,7 @@ use crate::input::value::Value;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::plot::{Line, Panel};
 use crate::store::table::{Column, Table};
+use crate::study::{Meshes, meshes_text};
 
 /// The runs behind the rows of a condensed table.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,15 +19,8 @@ pub struct Replicated<'a> {
     pub single: &'a Table,
     /// The parameters whose values repeat a point.
     pub names: &'a [String],
-    /// The meshes from which values are extrapolated, coarsest first; empty without any.
-    pub meshes: &'a [u32],
-}
-
-/// "4 and 6", "4, 6 and 8".
-fn meshes_text(meshes: &[u32]) -> String {
-    let [coarser @ .., finest] = meshes else { return String::new() };
-    let coarser: Vec<String> = coarser.iter().map(ToString::to_string).collect();
-    format!("{} and {finest}", coarser.join(", "))
+    /// The meshes from which values are extrapolated.
+    pub meshes: &'a Meshes,
 }
 
 impl<'a> Source<'a> {
@@ -57,7 +51,7 @@ impl<'a> Source<'a> {
     /// The legend of mesh errors; `None` where no row has one.
     pub(super) fn mesh_error_legend(&self, measure: &Column) -> Option<Legend> {
         let has_error = self.rows.iter().any(|row| self.mesh_error(measure, *row).is_some());
-        let meaning = format!("against n {}, 9 of 10 runs", MeshErrors::shipped().reference);
+        let meaning = format!("against n {}, 19 of 20 runs", MeshErrors::shipped().reference);
         let outside = self.table.column(NO_ERROR_REASON).is_some_and(|reasons| {
             let has_error = |row: &&usize| self.mesh_error(measure, **row).is_some();
             self.rows.iter().filter(has_error).any(|row| reasons.cells[*row] != Value::Null)
@@ -89,8 +83,10 @@ impl<'a> Source<'a> {
             return String::new();
         };
         let on_meshes = match runs.meshes {
-            [] => String::new(),
-            meshes => format!(" on n {}", meshes_text(meshes)),
+            Meshes { list, of_pilots: false } if !list.is_empty() => {
+                format!(" on n {}", meshes_text(list))
+            }
+            _ => String::new(),
         };
         let replicates = runs.names.iter().filter(|name| !is_mesh(name, runs.meshes));
         let names: Vec<String> =
@@ -144,12 +140,17 @@ impl<'a> Source<'a> {
     /// From which meshes the values of a measure come; without one, the histories.
     pub(super) fn meshes_note(&self, measure: Option<&Column>) -> Option<String> {
         let Replicated { single, meshes, .. } = self.runs?;
-        let [.., second, finest] = meshes else { return None };
+        let [.., second, finest] = &meshes.list[..] else { return None };
         let extrapolated = measure.is_some_and(|measure| {
             let values = single.column(&measure.name);
             values.is_some_and(|values| replicates::source(single, values) != values)
         });
-        Some(if extrapolated {
+        Some(if meshes.of_pilots {
+            format!(
+                "Points with runs on n {} (pilots, nearest to a limit) show these alone.",
+                meshes_text(&meshes.list)
+            )
+        } else if extrapolated {
             format!(
                 "Values are extrapolated from n {second} and {finest}; outcomes are those on n {finest}."
             )

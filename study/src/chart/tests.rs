@@ -6,6 +6,7 @@ use billow_solver::output::outcome::FailureKind;
 
 use super::kinds::ChartKind;
 use super::*;
+use crate::accuracy::AssumedRanges;
 use crate::job::point::{Infeasible, Point, Searched};
 use crate::job::row::{Cells, ColumnId};
 use crate::job::{Job, JobId, Status};
@@ -73,7 +74,7 @@ fn with_records(points: &[Point], edit: impl Fn(usize, &mut Cells)) -> Table {
         "residual_gas_mass" => "kg".to_owned(),
         _ => "1".to_owned(),
     };
-    Table::build(points, &records, &unit)
+    Table::build(points, &records, &unit, &AssumedRanges::default())
 }
 
 fn source(table: &Table) -> Source<'_> {

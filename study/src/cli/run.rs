@@ -140,6 +140,7 @@ pub(super) fn run_study(
             study: study.file(),
             planner: &|finished| plan::next_jobs(&study, finished),
             result_limits: study.result_limits(),
+            assumed: study.assumed(),
             table: &|points, records| Table::of_study(&study, points, records),
             label: &|parameters| study.label(parameters, &units),
             executor: &Solver { instruction_set, references: References::default() },
@@ -165,7 +166,8 @@ pub(super) fn run_study(
     let table = stored.table();
     let answer = Answer::of(&stored, &table);
     let (study, points) = (&stored.study, stored.planned_runs());
-    let ended = Ended { study, root, summary: &summary, points };
+    let pilots = stored.pilot_runs();
+    let ended = Ended { study, root, summary: &summary, points, pilots };
     ended.print(&answer, options.output.format(), out).map_err(output_error)?;
     result(study, &summary, &limits, root)
 }
@@ -177,13 +179,15 @@ struct Ended<'a> {
     summary: &'a Summary,
     /// Number of points planned so far.
     points: usize,
+    /// Number of runs of pilots among them.
+    pilots: usize,
 }
 
 impl Ended<'_> {
     fn print(&self, answer: &Answer, format: Format, out: &mut dyn Write) -> io::Result<()> {
         let Self { study, root, summary, .. } = self;
         let (name, counts) = (&study.name, &summary.counts);
-        let points = points_of_runs(study, self.points);
+        let points = points_of_runs(study, self.points, self.pilots);
         if format == Format::Json {
             let mut json = serde_json::json!({
                 "study": name,

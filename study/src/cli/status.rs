@@ -192,7 +192,7 @@ impl<'a> Status<'a> {
         };
         let points = format!(
             "{}: {}, {} infeasible{duplicates}",
-            points_of_runs(&stored.study, runs),
+            points_of_runs(&stored.study, runs, stored.pilot_runs()),
             count(counts.jobs(), "job"),
             of(JobStatus::Infeasible)
         );

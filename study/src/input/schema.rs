@@ -122,12 +122,18 @@ fn extend(schema: &mut Json, more: Json) {
 fn form(path: &str) -> Json {
     match path {
         "solver.meshes" => json!({
-            "type": "array", "items": {"type": "integer", "minimum": 1}, "minItems": 2,
+            "type": "array", "items": {"type": "integer", "minimum": 1}, "minItems": 1,
             "maxItems": 3, "uniqueItems": true,
         }),
         "solver.stepping" => json!({"maxProperties": 1}),
         "strategies" => json!({"type": "object", "additionalProperties": false}),
         "units" => json!({"type": "object", "additionalProperties": {"type": "string"}}),
+        "assumed" => json!({
+            "type": "object",
+            "additionalProperties": {
+                "type": "array", "items": {"type": ["number", "string"]}, "minItems": 2, "maxItems": 2,
+            },
+        }),
         "limits" => json!({
             "type": "object",
             "additionalProperties": {

@@ -3,11 +3,12 @@
 
 use std::fmt::Write as _;
 
-use crate::accuracy::{MeshErrors, NO_ERROR_REASON, NOT_DEPLOYED};
+use crate::accuracy::{MeshErrors, NO_ERROR_REASON, is_unknown};
 use crate::analysis::replicates::is_mesh;
 use crate::input::value::Value;
 use crate::print::count;
 use crate::store::table::Table;
+use crate::study::{Meshes, meshes_text};
 
 /// What a row of points holds: runs that differ in `replicates`, on the meshes of the study (coarsest first; none where
 /// values are not extrapolated). `of_each` says what a cell has.
@@ -15,16 +16,24 @@ pub fn points(
     points: usize,
     runs: usize,
     replicates: &[String],
-    meshes: &[u32],
+    meshes: &Meshes,
     of_each: &str,
 ) -> String {
     let names: Vec<&str> =
         replicates.iter().map(String::as_str).filter(|name| !is_mesh(name, meshes)).collect();
     let mut text = format!("{}, {}", count(points, "point"), count(runs, "run"));
-    if !names.is_empty() && runs > points * meshes.len().max(1) {
+    let on_all = if meshes.of_pilots { &[][..] } else { &meshes.list };
+    if !names.is_empty() && runs > points * on_all.len().max(1) {
         let _ = write!(text, " that differ in {}: {of_each}", names.join(", "));
     }
-    if let Some((finest, coarser)) = meshes.split_last() {
+    if meshes.of_pilots {
+        let _ = write!(
+            text,
+            "; the points nearest to a limit have values extrapolated from n {} (pilots), once these have run",
+            meshes_text(&meshes.list)
+        );
+    }
+    if let Some((finest, coarser)) = on_all.split_last() {
         let [others @ .., next] = coarser else { return text };
         let _ = write!(
             text,
@@ -43,21 +52,28 @@ pub const THREE_MESHES: &str = "\"solver\": {\"meshes\": [4, 6, 8]} gives one";
 
 /// What the mesh errors that are `shown` are, and where they come from outside the table of mesh errors: of values that
 /// are extrapolated from several meshes.
-pub fn mesh_errors(shown: bool, table: &Table, meshes: &[u32]) -> Vec<String> {
+pub fn mesh_errors(shown: bool, table: &Table, meshes: &Meshes) -> Vec<String> {
     let mut notes = Vec::new();
     if shown {
         let finest = MeshErrors::shipped().reference;
         notes.push(format!(
-            "±: mesh error, which 9 of 10 runs of the table of mesh errors keep: to the value on n {finest}"
+            "±: mesh error, which 19 of 20 runs of the table of mesh errors keep: to the value on n {finest}"
         ));
     }
     let reasons = table.column(NO_ERROR_REASON).into_iter().flat_map(|column| column.cells.iter());
     let mut gaps = reasons.filter_map(|cell| match cell {
-        Value::Text(text) if text != NOT_DEPLOYED => Some(text),
+        Value::Text(text) if is_unknown(text) => Some(text),
         _ => None,
     });
+    if meshes.of_pilots {
+        notes.push(
+            "where the table does not reach: the largest error of the pilots (no_error_reason)"
+                .to_owned(),
+        );
+    }
     let Some(gap) = gaps.next() else { return notes };
-    notes.push(match meshes.len() {
+    let on_all = if meshes.of_pilots { 0 } else { meshes.list.len() };
+    notes.push(match on_all {
         0 => format!("rows without ± have no known error (no_error_reason): {gap}; {THREE_MESHES}"),
         2 => format!("rows that the table does not cover (no_error_reason) have no ±; {THREE_MESHES}"),
         _ => "rows that the table does not cover (no_error_reason): ± is 3 times the change of the extrapolated value \

@@ -48,8 +48,13 @@ pub const MAX_VALUES: usize = 6;
 pub type TopicLine = (&'static str, String);
 
 /// A number of points with several runs each: "30 points of 5 runs", or "57 points, 256 runs" where a filter leaves some
-/// points fewer. `planned` counts every run. A study without replicates has points only, also one that gives a value twice.
-pub fn points_of_runs(study: &Study, planned: usize) -> String {
+/// points fewer. `planned` counts every run, also those of `pilots`, which are named apart. A study without replicates has
+/// points only, also one that gives a value twice.
+pub fn points_of_runs(study: &Study, planned: usize, pilots: usize) -> String {
+    if pilots > 0 {
+        let points = points_of_runs(study, planned - pilots, 0);
+        return format!("{points}, and {} of pilots", count(pilots, "run"));
+    }
     if study.replicates().is_empty() {
         return count(planned, "point");
     }

@@ -13,7 +13,7 @@ use crate::input::keys::{MODELS, Model};
 use crate::input::value::{Value, brief_number};
 use crate::job::point::Point;
 use crate::study::ground::pressure_below_ambient;
-use crate::study::{Study, features};
+use crate::study::{Meshes, Study, features, meshes_text};
 
 mod bending;
 
@@ -39,7 +39,8 @@ fn of_points(study: &Study) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     lines.extend(of_meshes(study));
     lines.extend(without_error(study));
-    let subdivisions = study.key(MESH_PARAMETER).filter(|_| !study.meshes().is_empty());
+    let given = |meshes: Meshes| !meshes.list.is_empty() && !meshes.of_pilots;
+    let subdivisions = study.key(MESH_PARAMETER).filter(|_| given(study.meshes()));
     if let Some(given) = subdivisions.filter(|key| key.value != key.key.default_value()) {
         lines.push(format!("note: solver.meshes replaces design.subdivisions {}", given.value));
     }
@@ -108,7 +109,10 @@ fn single_runs(study: &Study) -> Option<String> {
 /// The errors of values from several meshes, or why there are none.
 fn of_meshes(study: &Study) -> Option<String> {
     let meshes = study.meshes();
-    let [.., next, finest] = meshes[..] else { return None };
+    let [.., next, finest] = meshes.list[..] else { return None };
+    if meshes.of_pilots {
+        return None;
+    }
     let method = Method { model: ModelKind::Film, meshes: vec![next, finest] };
     let scenes: Vec<_> = study.points().iter().filter_map(features).collect();
     let name = method.name();
@@ -118,7 +122,7 @@ fn of_meshes(study: &Study) -> Option<String> {
             choice.errors_text(),
             100.0 * choice.cost
         ),
-        Err(gap) if study.meshes().len() == 2 => {
+        Err(gap) if meshes.list.len() == 2 => {
             format!("note: two meshes give no errors here ({gap}); three meshes do")
         }
         Err(gap) => format!("note: the table of mesh errors does not cover every point ({gap})"),
@@ -135,15 +139,21 @@ fn without_error(study: &Study) -> Option<String> {
             _ => Some(format!("the error columns are those of film, not of {}", method.name())),
         }
     };
-    let points = study.points().iter().filter(|_| study.meshes().is_empty());
+    let meshes = study.meshes();
+    let points = study.points().iter().filter(|_| meshes.list.is_empty() || meshes.of_pilots);
     let gap = points.filter_map(features).find_map(gap)?;
+    let known = format!("note: the mesh error of some points is not known ({gap})");
+    if meshes.of_pilots {
+        let meshes = meshes_text(&meshes.list);
+        return Some(format!(
+            "{known}; pilots give one: in the end the points nearest to a limit run on n {meshes}"
+        ));
+    }
     let limits = match study.result_limits() {
         [] => "",
         _ => "; no limit is met for certain there",
     };
-    Some(format!(
-        "note: the mesh error of some points is not known ({gap}){limits}; {THREE_MESHES}"
-    ))
+    Some(format!("{known}{limits}; {THREE_MESHES}"))
 }
 
 /// A note on capsules whose gas has less than ambient pressure at the start.

@@ -15,6 +15,7 @@ use billow_solver::output::measures::{Measures, Verdict};
 use billow_solver::output::outcome::{Deployment, Stop as End};
 use billow_solver::scene::{Scene, paper};
 
+use crate::accuracy::AssumedRanges;
 use crate::input::json::Json;
 use crate::input::value::Value;
 use crate::job::control::{Order, Task};
@@ -133,7 +134,8 @@ pub fn points(jobs: u32) -> Vec<Point> {
 pub fn table(root: &Path, jobs: u32) -> Table {
     let results = Results::new(&Disk, root);
     let records = results.journal().unwrap().records;
-    let table = Table::build(&points(jobs), &records, &|_| String::new());
+    let table =
+        Table::build(&points(jobs), &records, &|_| String::new(), &AssumedRanges::default());
     assert_eq!(results.holds_table(table.clone()).unwrap(), Some(true));
     table
 }
@@ -151,13 +153,17 @@ pub fn run<'a>(
     executor: &'a dyn Executor,
 ) -> Run<'a> {
     static STUDY: Json = Json::Object(Vec::new());
+    static ASSUMED: AssumedRanges = AssumedRanges([[0.003, 0.03], [0.1, 1.0]]);
     Run {
         name: "test",
         study: &STUDY,
         planner,
         result_limits: &[],
+        assumed: &ASSUMED,
         label: &job::label,
-        table: &|points, records| Table::build(points, records, &|_| String::new()),
+        table: &|points, records| {
+            Table::build(points, records, &|_| String::new(), &AssumedRanges::default())
+        },
         executor,
         results,
         threads: NonZero::new(1),

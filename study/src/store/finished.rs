@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::accuracy::AssumedRanges;
 use crate::job::JobId;
 use crate::job::point::Point;
 use crate::job::result_limit::ResultLimit;
@@ -13,10 +14,11 @@ pub fn rows(
     points: &[Point],
     records: &BTreeMap<JobId, Record>,
     limits: &[ResultLimit],
+    assumed: &AssumedRanges,
 ) -> Vec<FinishedRow> {
     let row = |point: &Point| {
         let cells = journal::cells_of(point, records)?;
-        Some(FinishedRow::of(&point.job, &cells, limits))
+        Some(FinishedRow::of(&point.job, &cells, limits, assumed))
     };
     points.iter().filter_map(row).collect()
 }

@@ -112,7 +112,8 @@ impl<'a> Stored<'a> {
     }
 
     fn finished(&self) -> Vec<FinishedRow> {
-        finished::rows(&self.points, &self.journal.records, self.study.result_limits())
+        let (limits, assumed) = (self.study.result_limits(), self.study.assumed());
+        finished::rows(&self.points, &self.journal.records, limits, assumed)
     }
 
     /// Number of runs planned so far, one for each replicate of a point, also of those that share a job.
@@ -120,10 +121,27 @@ impl<'a> Stored<'a> {
         self.points.iter().map(|point| 1 + point.merged.len()).sum()
     }
 
+    /// Number of runs of pilots among them.
+    pub fn pilot_runs(&self) -> usize {
+        self.points.iter().filter(|point| self.study.is_pilot(point)).count()
+    }
+
     /// What the searches of the study have found so far.
     pub fn borders(&self) -> Vec<Border> {
         let finished = self.finished();
-        plan::borders(&self.study, &finished)
+        let mut judged = finished.clone();
+        if self.study.meshes().of_pilots {
+            // Only the whole table knows the errors of the pilots.
+            let table = self.table();
+            let jobs = table.one_row_per_job(&(0..table.rows()).collect::<Vec<_>>());
+            // Both stand in the order of the plan.
+            let ended = jobs.iter().filter(|row| table.status(**row) != Some(Status::Pending));
+            for (row, position) in judged.iter_mut().zip(ended) {
+                let limits = self.study.result_limits().iter();
+                row.limits = limits.map(|limit| table.judge(limit, *position)).collect();
+            }
+        }
+        plan::borders(&self.study, &finished, &judged)
     }
 
     /// The point of a job.
@@ -253,7 +271,8 @@ pub fn planned(study: &Study, journal: &Journal) -> Arc<Vec<Point>> {
         if !study.has_generations() {
             break;
         }
-        finished = finished::rows(&points, &journal.records, study.result_limits());
+        finished =
+            finished::rows(&points, &journal.records, study.result_limits(), study.assumed());
     }
     points
 }

@@ -1,10 +1,10 @@
 //! What decides the numbers of a study and is no result of it, from the values of its points.
 
 use billow_solver::geometry::fold::FoldDesign;
-use billow_solver::scene::Scene;
-use billow_solver::scene::paper::LOSS_FACTOR;
+use billow_solver::scene::{HeatTransfer, Scene};
 
 use super::ground::{pressure_at_release, stowed_volume};
+use crate::accuracy::{ASSUMED_KEYS, AssumedRanges, assumed_value};
 use crate::input::keys;
 use crate::input::value::{brief_number, range_text, short_number};
 use crate::job::point::Point;
@@ -12,8 +12,9 @@ use crate::job::point::Point;
 /// Most designs whose stacks are measured. Chosen: milliseconds.
 const MAX_DESIGNS: usize = 100;
 
-/// The assumptions of these points, one short text each: a value, or its range over the points.
-pub fn assumptions(points: &[Point]) -> Vec<String> {
+/// The assumptions of these points, one short text each: a value, or its range over the points; of what is assumed with
+/// the ranges over which results are judged.
+pub fn assumptions(points: &[Point], ranges: &AssumedRanges) -> Vec<String> {
     let feasible = points.iter().filter(|point| point.infeasible.is_none());
     let scenes: Vec<&Scene> = feasible.map(|point| &*point.job.scene).collect();
     let range =
@@ -23,10 +24,14 @@ pub fn assumptions(points: &[Point]) -> Vec<String> {
         let reads = |scene: &&Scene| !keys::model(scene.solver.model).ignores.contains(&key);
         scenes.iter().any(reads).then_some(text)
     };
-    let (Some(ambient), Some(gravity), Some(loss), Some(friction)) = (
+    let (Some(ambient), Some(gravity), Some(loss), Some(heat), Some(friction)) = (
         range(|scene| scene.gas.ambient_pressure),
         range(|scene| scene.gravity),
         range(|scene| scene.film.loss_factor),
+        range(|scene| match scene.gas.heat_transfer {
+            HeatTransfer::Coefficient(coefficient) => coefficient,
+            HeatTransfer::Isothermal => f64::INFINITY,
+        }),
         range(|scene| scene.contact.friction),
     ) else {
         return Vec::new();
@@ -34,19 +39,31 @@ pub fn assumptions(points: &[Point]) -> Vec<String> {
     let or = |range: &str, zero: &str, text: String| {
         if range == "0" { zero.to_owned() } else { text }
     };
-    let assumed = if loss == short_number(LOSS_FACTOR) { ", assumed" } else { "" };
     let mut texts = vec![
         or(&ambient, "vacuum", format!("ambient pressure {ambient} Pa")),
         or(&gravity, "no gravity", format!("gravity {gravity} m/s²")),
         "no floor".to_owned(),
     ];
     texts.extend(stacks(&scenes));
-    let loss = format!("film loss {loss}{assumed} (polyimide 0.003 to 0.03)");
+    let loss = format!("film loss {loss}{}", ranges_text(&loss, ranges, 0));
     texts.extend(used("film.loss_factor", loss));
+    let heat = if heat.contains("inf") {
+        "gas at film temperature".to_owned()
+    } else {
+        format!("heat transfer {heat} W/(m² K){}", ranges_text(&heat, ranges, 1))
+    };
+    texts.extend(used("gas.heat_transfer", heat));
     let friction = or(&friction, "no friction", format!("friction {friction}"));
     texts.extend(used("contact.friction", friction));
     texts.push("uniform gas pressure".to_owned());
     texts
+}
+
+/// The range of one of [`ASSUMED_KEYS`], where every scene has the value that is assumed.
+fn ranges_text(value: &str, ranges: &AssumedRanges, index: usize) -> String {
+    let [low, high] = ranges.0[index].map(short_number);
+    let assumed = value == short_number(assumed_value(ASSUMED_KEYS[index]));
+    if assumed { format!(" (assumed: {low} to {high})") } else { String::new() }
 }
 
 /// Height and volume of the stowed stacks, and the pressure in them at the release where gas is inside before it.
@@ -91,15 +108,15 @@ mod tests {
             }}"#
         );
         let study = Study::from_text(&text, "test.json", "test", &[], MAX_POINTS).unwrap();
-        assumptions(study.points()).join("; ")
+        assumptions(study.points(), study.assumed()).join("; ")
     }
 
     #[test]
     fn assumptions_are_the_values_of_the_points_or_their_range() {
         assert_eq!(
             of("{}"),
-            "vacuum; no gravity; no floor; stack 40 mm high, 15.12 litres; film loss 0.015, assumed (polyimide 0.003 to \
-             0.03); no friction; uniform gas pressure"
+            "vacuum; no gravity; no floor; stack 40 mm high, 15.12 litres; film loss 0.015 (assumed: 0.003 to 0.03); \
+             heat transfer 0.3 W/(m² K) (assumed: 0.1 to 1); no friction; uniform gas pressure"
         );
         // 0.1 g of nitrogen at 293 K, m R T/V; a capsule of 10 mm does not fold.
         assert_eq!(
@@ -108,7 +125,7 @@ mod tests {
                 "friction": [0.2], "height": [1, 0.01]}"#
             ),
             "vacuum; gravity -1.62 m/s²; no floor; stack 40 mm high, 15.12 litres; 0 to 575.3 Pa in it before the \
-             release; film loss 0.003 to 0.02 (polyimide 0.003 to 0.03); friction 0.2; uniform gas pressure"
+             release; film loss 0.003 to 0.02; heat transfer 0.3 W/(m² K) (assumed: 0.1 to 1); friction 0.2; uniform gas pressure"
         );
         let piston =
             of(r#"{"model": ["piston"], "ambient_pressure": [10], "residual_gas": ["ambient"]}"#);

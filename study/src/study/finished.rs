@@ -2,8 +2,8 @@
 
 use billow_solver::output::measures::Verdict;
 
-use crate::accuracy::RowErrors;
-use crate::job::result_limit::{ResultLimit, Safety};
+use crate::accuracy::{AssumedRanges, RowErrors};
+use crate::job::result_limit::{Judged, ResultLimit};
 use crate::job::row::Cells;
 use crate::job::{Job, JobId, Status};
 
@@ -16,22 +16,21 @@ pub struct FinishedRow {
     pub status: Status,
     /// Its verdict.
     pub verdict: Option<Verdict>,
-    /// For each limit of the study what is known of it, as far as its uncertainty is known.
-    pub limits: Vec<Option<Safety>>,
+    /// What each limit of the study says of it.
+    pub limits: Vec<Option<Judged>>,
 }
 
 impl FinishedRow {
     /// The row of a job that ended with these cells.
-    pub fn of(job: &Job, cells: &Cells, limits: &[ResultLimit]) -> Self {
+    pub fn of(job: &Job, cells: &Cells, limits: &[ResultLimit], assumed: &AssumedRanges) -> Self {
         let status = cells.status();
         let errors = match limits {
             [] => RowErrors::NONE,
-            _ => RowErrors::of(&job.scene, cells),
+            _ => RowErrors::of(&job.scene, cells, assumed),
         };
         let known = |limit: &ResultLimit| {
             let uncertainty = errors.uncertainty(limit.measure, cells);
-            let judged = limit.judge(status, cells.get(limit.measure), uncertainty)?;
-            Some(judged.as_far_as_known())
+            limit.judge(status, cells.get(limit.measure), uncertainty)
         };
         let limits = limits.iter().map(known).collect();
         Self { id: job.id.clone(), status, verdict: cells.verdict(), limits }

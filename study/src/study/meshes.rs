@@ -1,4 +1,5 @@
-//! `solver.meshes` of a study: each point runs on several meshes, and its row has the values extrapolated from them.
+//! `solver.meshes` of a study: each point runs on several meshes, and its row has the values extrapolated from them. Of
+//! one mesh, each point runs on it alone.
 //!
 //! The meshes are an axis that varies fastest, as replicates do. They must be meshes of the table of mesh errors,
 //! which has the weights of the extrapolation.
@@ -19,7 +20,23 @@ use crate::platform::error::InputError;
 /// The key, for errors.
 const MESHES: &str = "solver.meshes";
 /// The key that the meshes vary.
-const SUBDIVISIONS: usize = position(KEYS, "design.subdivisions");
+pub(super) const SUBDIVISIONS: usize = position(KEYS, "design.subdivisions");
+
+/// The meshes from which values of a study are extrapolated.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Meshes {
+    /// Subdivisions, coarsest first; empty without any.
+    pub list: Vec<u32>,
+    /// Whether the pilots alone run on all of them.
+    pub of_pilots: bool,
+}
+
+/// "4 and 6", "4, 6 and 8".
+pub fn meshes_text(meshes: &[u32]) -> String {
+    let [coarser @ .., finest] = meshes else { return String::new() };
+    let coarser: Vec<String> = coarser.iter().map(ToString::to_string).collect();
+    format!("{} and {finest}", coarser.join(", "))
+}
 
 impl Grid {
     /// Reads the meshes, as the last axis.
@@ -39,7 +56,7 @@ impl Grid {
         if self.columns.contains(&column) {
             return Err(refuse("varies subdivisions, which another axis varies already"));
         }
-        if self.search.is_some() {
+        if self.search.is_some() && meshes.len() > 1 {
             return Err(refuse(
                 "extrapolates from several meshes, and a search judges single runs",
             ));
@@ -51,7 +68,7 @@ impl Grid {
         Ok(())
     }
 
-    /// The meshes of each point, coarsest first; empty without any.
+    /// The meshes of each point, coarsest first; empty where the study does not give them.
     pub(super) fn meshes(&self) -> Vec<u32> {
         let axes = self.axes.iter().filter(|axis| axis.kind == AxisKind::Meshes);
         let values = axes.flat_map(|axis| &axis.rows).flatten();
@@ -68,7 +85,7 @@ impl Grid {
 fn read_list(json: &Json, source: &Source) -> Result<Vec<u32>, InputError> {
     let known = MeshErrors::shipped().meshes();
     let names = known.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-    let allowed = format!("2 to 3 of {names}, the coarsest first, as in [4, 8]");
+    let allowed = format!("1 to 3 of {names}, the coarsest first, as in [4, 8]");
     let whole = |item: &Json| match item {
         Json::Integer(n) => u32::try_from(*n).ok().filter(|n| known.contains(n)),
         _ => None,
@@ -77,10 +94,10 @@ fn read_list(json: &Json, source: &Source) -> Result<Vec<u32>, InputError> {
         list(json, MESHES, source, &allowed)?.iter().map(whole).collect();
     let problem = match meshes {
         None => "has a mesh that the table of mesh errors has not",
-        Some(meshes) if matches!(meshes.len(), 2 | 3) && meshes.is_sorted_by(|a, b| a < b) => {
+        Some(meshes) if matches!(meshes.len(), 1..=3) && meshes.is_sorted_by(|a, b| a < b) => {
             return Ok(meshes);
         }
-        Some(_) => "is not 2 to 3 meshes in ascending order",
+        Some(_) => "is not 1 to 3 meshes in ascending order",
     };
     Err(source.error(MESHES, json, problem, allowed))
 }

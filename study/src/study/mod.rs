@@ -12,6 +12,7 @@
 //! these settings, `inflow.rs` its inflow windows, from numbers that `Settings::needed` takes. A study without strategies
 //! has one, `direct`, with one window, which takes the values of section `gas`; a burst of residual gas is a window too.
 
+mod assumed;
 pub mod assumptions;
 mod column;
 mod expand;
@@ -22,6 +23,7 @@ pub(crate) mod ground;
 mod inflow;
 mod meshes;
 mod parameters;
+mod pilots;
 pub mod plan;
 mod range;
 mod replicates;
@@ -34,6 +36,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
+use crate::accuracy::AssumedRanges;
 use crate::input::json::Json;
 use crate::input::keys::STUDY;
 use crate::input::keys::numerical::is_numerical;
@@ -47,8 +50,10 @@ use crate::job::limits::JobLimits;
 use crate::job::point::{Point, Searched};
 use crate::job::result_limit::ResultLimit;
 use crate::platform::error::{InputError, Result as BillowResult};
+use finished::FinishedRow;
 use grid::{Context, Grid};
 pub(crate) use meshes::features;
+pub use meshes::{Meshes, meshes_text};
 pub use parameters::{StudyKey, Zipped};
 pub use search::{Border, Criterion, Level, SearchResult};
 
@@ -88,11 +93,15 @@ pub struct Study {
     grid: Grid,
     /// What its results must meet to be safe.
     result_limits: Vec<ResultLimit>,
+    /// The ranges of what is assumed.
+    assumed: AssumedRanges,
     /// Its points in plan order: those of the product that the filter keeps, the first axis slowest, then
     /// the single points, which it does not concern.
     points: Arc<Vec<Point>>,
     /// Number of points of the product that the filter removed.
     filtered: usize,
+    /// The meshes of its pilots, where it needs them.
+    pilots: Option<[u32; 3]>,
 }
 
 impl Study {
@@ -154,13 +163,18 @@ impl Study {
         let notes = overrides::apply(&mut tree, sets, &STUDY, &mut source)?;
         let settings = Settings::of_study(&tree, &source)?;
         let result_limits = result_limits::read(tree.get(LIMITS), &source)?;
+        let assumed = assumed::read(tree.get("assumed"), &source)?;
         let context =
             Context { settings: &settings, limits: &result_limits, source: &source, max_points };
-        let grid = Grid::read(&tree, context)?;
+        let mut grid = Grid::read(&tree, context)?;
         grid.refuse_varied(&source)?;
         let units = units::read(&tree, &settings, &source)?;
-        let (points, filtered) = expand::points(&settings, &grid, &source, max_points)?;
+        let (mut points, filtered) = expand::points(&settings, &grid, &source, max_points)?;
         meshes::refuse_other_models(&grid, &points, &source)?;
+        let pilots = pilots::meshes(&settings, &grid, &result_limits, &points);
+        if pilots.is_some() {
+            pilots::add_mesh(&settings, &mut grid, &mut points);
+        }
         let name = study_name(&settings, stem, &source)?;
         let question = settings.text("question").unwrap_or_default().to_owned();
         let warnings = source.warnings();
@@ -176,8 +190,10 @@ impl Study {
             settings,
             grid,
             result_limits,
+            assumed,
             points: Arc::new(points),
             filtered,
+            pilots,
         })
     }
 
@@ -186,14 +202,39 @@ impl Study {
         &self.result_limits
     }
 
+    /// The ranges of what is assumed.
+    pub fn assumed(&self) -> &AssumedRanges {
+        &self.assumed
+    }
+
     /// Names of the parameters whose values repeat a point.
     pub fn replicates(&self) -> Vec<String> {
         self.grid.repeated()
     }
 
-    /// The meshes from which the values of each point are extrapolated, coarsest first; empty without any.
-    pub fn meshes(&self) -> Vec<u32> {
-        self.grid.meshes()
+    /// The meshes from which the values of each point, or of its pilots, are extrapolated.
+    pub fn meshes(&self) -> Meshes {
+        let list = self.pilots.map_or_else(|| self.grid.meshes(), Vec::from);
+        let list = if list.len() > 1 { list } else { Vec::new() };
+        Meshes { list, of_pilots: self.pilots.is_some() }
+    }
+
+    /// The runs of its pilots, once these planned points are finished; none where it needs no pilots.
+    pub(crate) fn pilots(&self, planned: &[Point], finished: &[FinishedRow]) -> Vec<Point> {
+        self.pilots.map_or_else(Vec::new, |meshes| {
+            pilots::points(&self.grid, &meshes, &self.result_limits, planned, finished)
+        })
+    }
+
+    /// Whether a planned point is the run of a pilot on another mesh than that of the study.
+    pub(crate) fn is_pilot(&self, point: &Point) -> bool {
+        self.pilots.is_some()
+            && point.job.scene.design.subdivisions != self.points[0].job.scene.design.subdivisions
+    }
+
+    /// The most pilots that it can have, one for each run of a point.
+    pub fn most_pilots(&self) -> usize {
+        self.point_count().min(2 * pilots::NEAREST) * self.replicate_count()
     }
 
     /// Number of runs of each point: 1 without replicates.
@@ -203,7 +244,7 @@ impl Study {
 
     /// Whether its finished rows decide about further points.
     pub fn has_generations(&self) -> bool {
-        self.grid.search.is_some()
+        self.grid.search.is_some() || self.pilots.is_some()
     }
 
     /// The parameter along which it searches a border, and what changes there; `None` without a search.

@@ -60,7 +60,7 @@ impl PlanCounts {
 ///
 /// A generation is planned whole while any of its jobs has no finished row; the runner leaves out the
 /// finished ones. A grid has one generation, a search one more each time its jobs have ended. Infeasible
-/// points have no job to finish. Without any finished row the first generation is always given, so that a
+/// points have no job to finish. The pilots of a study are its last generation. Without any finished row the first generation is always given, so that a
 /// study of infeasible points gets its rows.
 pub fn next_jobs(study: &Study, finished: &[FinishedRow]) -> Option<Generation> {
     let ids: BTreeSet<&JobId> = finished.iter().map(|row| &row.id).collect();
@@ -71,18 +71,24 @@ pub fn next_jobs(study: &Study, finished: &[FinishedRow]) -> Option<Generation> 
     if is_open(study.points()) || finished.is_empty() {
         return Some(generation(0, study.points()));
     }
-    let mut replay = Replay::new(study, finished)?;
-    for number in 1.. {
-        let points = Arc::new(replay.next_points());
-        if points.is_empty() {
-            break;
+    let mut planned = generation(0, study.points()).points;
+    let mut number = 1;
+    if let Some(mut replay) = Replay::new(study, finished) {
+        loop {
+            let points = Arc::new(replay.next_points());
+            if points.is_empty() {
+                break;
+            }
+            if is_open(&points) {
+                return Some(generation(number, &points));
+            }
+            replay.add(&points);
+            number += 1;
+            add_generation(&mut planned, generation(number, &points));
         }
-        if is_open(&points) {
-            return Some(generation(number, &points));
-        }
-        replay.add(&points);
     }
-    None
+    let pilots = Arc::new(study.pilots(&planned, finished));
+    is_open(&pilots).then(|| generation(number, &pilots))
 }
 
 /// Adds a generation to the points planned before. A job that is planned already keeps its place and its
@@ -106,12 +112,14 @@ pub fn add_generation(points: &mut Arc<Vec<Point>>, generation: Generation) {
     }
 }
 
-/// What the searches of a study have found with these finished jobs.
-pub fn borders(study: &Study, finished: &[FinishedRow]) -> Vec<Border> {
+/// What the searches of a study have found with these finished jobs; `judged` are the same with the errors of pilots.
+pub fn borders(study: &Study, finished: &[FinishedRow], judged: &[FinishedRow]) -> Vec<Border> {
     let Some(mut replay) = Replay::new(study, finished) else { return Vec::new() };
     loop {
         let points = replay.next_points();
         if points.is_empty() {
+            // What the pilots say plans no further jobs.
+            replay.judge_by(judged);
             return replay.borders();
         }
         replay.add(&points);

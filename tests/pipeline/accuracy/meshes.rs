@@ -65,6 +65,79 @@ fn outside_the_table_three_meshes_tell_their_error_and_two_do_not() {
     assert!(printed.contains("extrapolated from n 2 and 4"), "{printed}");
 }
 
+/// Outside the table of mesh errors the points nearest to a limit run on two more meshes, and every point has an error.
+#[test]
+fn pilots_give_an_error_outside_the_table_and_can_be_left_out() {
+    let mut study = film(&json!({
+        "contact": {"friction": 0.2}, "limits": {"peak_speed": "< 20 m/s"},
+        "grid": {"mass_flow_rate": ["1 g/s", "2 g/s", "4 g/s", "8 g/s", "16 g/s", "32 g/s"]}
+    }));
+    study["design"]["subdivisions"] = json!(2);
+    study["solver"] = json!({"model": "film", "end_time": "60 ms"});
+    let folder = TestFolder::new(&study);
+    let plan = stderr(&folder.run(&["plan", "grid.json"]));
+    assert!(plan.contains("pilots: up to 8 jobs, on n 3 and 4 of the points nearest"), "{plan}");
+    let answer = folder.stdout(&["run", "grid.json"]);
+    assert!(answer.contains("6 points, and 8 runs of pilots"), "{answer}");
+    let words = answer.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("the largest error of the pilots (n 2, 3, 4)"), "{answer}");
+    let (points, runs) = (folder.points("results/grid"), folder.rows("results/grid"));
+    assert_eq!((points.len(), runs.len()), (6, 14));
+    let error = |row: &Value| {
+        row["peak_speed_error"].as_f64().unwrap() / row["peak_speed"].as_f64().unwrap()
+    };
+    let pilots: Vec<&Value> = points
+        .iter()
+        .filter(|point| {
+            runs.iter().any(|run| {
+                run["subdivisions"] == 4 && run["mass_flow_rate"] == point["mass_flow_rate"]
+            })
+        })
+        .collect();
+    assert_eq!(pilots.len(), 4);
+    let others = points.iter().filter(|point| !pilots.contains(point));
+    for other in others {
+        let larger = pilots.iter().all(|pilot| error(other) >= error(pilot));
+        assert!(larger && error(other) > 0.0, "{other}");
+    }
+    assert!(points.iter().any(|point| point["safety"] == "unsafe"), "{points:?}");
+    let again = folder.run(&["run", "grid.json"]);
+    assert!(said(&again).contains("all 14 jobs are finished"), "{}", said(&again));
+    // On one mesh alone no error is known.
+    let one = ["run", "grid.json", "--set", "solver.meshes=[2]", "--results", "one"];
+    let answer = folder.stdout(&one);
+    assert!(answer.contains("mesh error of 6 jobs not known"), "{answer}");
+    assert_eq!(folder.rows("one").len(), 6);
+}
+
+/// A search has pilots at the ends of its border, and an interval that the error widens.
+#[test]
+fn the_ends_of_a_border_have_pilots_outside_the_table() {
+    let mut study = film(&json!({
+        "contact": {"friction": 0.2}, "limits": {"peak_speed": "< 20 m/s"},
+        "grid": {"mass_flow_rate": {"bisect": ["1 g/s", "16 g/s"], "on": "safe", "tolerance": "20 %", "spacing": "log"}}
+    }));
+    study["design"]["subdivisions"] = json!(2);
+    study["solver"] = json!({"model": "film", "end_time": "60 ms"});
+    let folder = TestFolder::new(&study);
+    let border = |folder: &TestFolder, results: &str| {
+        let json =
+            folder.stdout(&["run", "grid.json", "--results", results, "--format", "json", "-q"]);
+        let answer: Value = serde_json::from_str(&json).unwrap();
+        let border = answer["borders"]["searches"][0].clone();
+        ["low", "high"].map(|end| border[end].as_f64().unwrap_or_else(|| panic!("{answer}")))
+    };
+    let [low, high] = border(&folder, "results/grid");
+    let runs = folder.rows("results/grid");
+    let on_finest: Vec<f64> = runs
+        .iter()
+        .filter(|run| run["subdivisions"] == 4)
+        .map(|run| run["mass_flow_rate"].as_f64().unwrap())
+        .collect();
+    assert_eq!(on_finest.len(), 4, "two on each side");
+    assert!(high / low > 1.2, "{low} to {high}: wider than the tolerance alone");
+}
+
 /// A chart of several meshes shows what the table has: extrapolated values, and outcomes and histories of the finest mesh.
 #[test]
 fn charts_and_comparisons_of_several_meshes_name_what_they_show() {

@@ -110,7 +110,7 @@ impl Answer {
     pub fn of(stored: &Stored<'_>, table: &Table) -> Self {
         let mut answer = Self::of_jobs(table, &stored.study.replicates());
         answer.question.clone_from(&stored.study.question);
-        answer.assumptions = assumptions(&stored.points);
+        answer.assumptions = assumptions(&stored.points, stored.study.assumed());
         answer.largest_strain = largest_strain(stored);
         let rows: Vec<usize> = (0..table.rows()).collect();
         let (study, replicates) = (&stored.study, stored.study.replicates());

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::accuracy::{NO_ERROR_REASON, NOT_DEPLOYED};
+use crate::accuracy::{NO_ERROR_REASON, is_of_pilots, is_unknown};
 use crate::analysis::compare;
 use crate::analysis::statistics::Spread;
 use crate::input::value::Value;
@@ -34,6 +34,8 @@ pub struct Trust {
     pub without_error: usize,
     /// Why the first of these has none.
     pub no_error_reason: Option<String>,
+    /// Where the mesh errors of jobs outside the table come from, if pilots gave them.
+    pub pilots: Option<String>,
 }
 
 /// The audit of the done jobs in some rows; `None` without any.
@@ -57,10 +59,11 @@ pub(super) fn trust(table: &Table, rows: &[usize]) -> Option<Trust> {
     let total = |counts: &[i64]| (!counts.is_empty()).then(|| counts.iter().sum());
     let passages = counts(ColumnId::Passages);
     let reason = |row: &usize| match &table.column(NO_ERROR_REASON)?.cells[*row] {
-        Value::Text(reason) if reason != NOT_DEPLOYED => Some(reason.clone()),
+        Value::Text(reason) => Some(reason.clone()),
         _ => None,
     };
-    let reasons: Vec<String> = done.iter().filter_map(reason).collect();
+    let (reasons, known): (Vec<String>, Vec<String>) =
+        done.iter().filter_map(reason).partition(|reason| is_unknown(reason));
     (!done.is_empty()).then(|| Trust {
         jobs: done.len(),
         ledger_residual: largest(ColumnId::LedgerResidual),
@@ -76,6 +79,7 @@ pub(super) fn trust(table: &Table, rows: &[usize]) -> Option<Trust> {
             .count(),
         without_error: reasons.len(),
         no_error_reason: reasons.into_iter().next(),
+        pilots: known.into_iter().find(|reason| is_of_pilots(reason)),
         not_trusted: done.iter().filter(|row| !table.is_trusted(**row)).count(),
     })
 }

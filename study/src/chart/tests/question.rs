@@ -6,6 +6,7 @@ use crate::analysis::replicates::Condensed;
 use crate::chart::kinds::ChartKind;
 use crate::chart::runs::Replicated;
 use crate::job::result_limit::{Condition, ResultLimit};
+use crate::study::Meshes;
 
 fn limits() -> Vec<ResultLimit> {
     fixture::limits(25.0)
@@ -48,7 +49,12 @@ fn condensed<T>(table: &Table, limits: &[ResultLimit], draw: impl Fn(&Source<'_>
     draw(&Source {
         rows: (0..condensed.table.rows()).collect(),
         limits,
-        runs: Some(Replicated { condensed: &condensed, single: table, names: &names, meshes: &[] }),
+        runs: Some(Replicated {
+            condensed: &condensed,
+            single: table,
+            names: &names,
+            meshes: &Meshes::default(),
+        }),
         ..source(&condensed.table)
     })
 }

@@ -20,7 +20,7 @@ use crate::platform::files::{Disk, Files, disk_error};
 use crate::print::print_rows;
 use crate::store::results::Results;
 use crate::store::table::{Table, select};
-use crate::study::Study;
+use crate::study::{Meshes, Study};
 
 pub mod work_precision;
 
@@ -198,7 +198,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let limits = study.result_limits();
     let single = Source { limits, search, ..source(args, &name, &table)? };
     let is_mesh = |name: &String| name == MESH_PARAMETER;
-    let meshes = if replicates.iter().any(is_mesh) { study.meshes() } else { Vec::new() };
+    let meshes = if replicates.iter().any(is_mesh) { study.meshes() } else { Meshes::default() };
     let condensed =
         (!replicates.is_empty()).then(|| Condensed::of(single.table, &single.rows, &replicates));
     let source = condensed.as_ref().map_or_else(

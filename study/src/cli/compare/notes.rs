@@ -11,6 +11,7 @@ use crate::job::row::BetterSide;
 use crate::print::count;
 use crate::print::legend;
 use crate::store::table::Table;
+use crate::study::Meshes;
 
 /// What a cell of a point holds.
 const MEDIANS: &str = "median [least to largest]";
@@ -21,7 +22,7 @@ pub(super) fn print(
     base: &Value,
     alone: &[usize],
     replicates: &[String],
-    meshes: &[u32],
+    meshes: &Meshes,
 ) {
     let by = &comparison.by.name;
     let base = comparison.by.shown.quantity(base);
@@ -59,7 +60,8 @@ pub(super) fn print(
         eprintln!("{text}; --runs pairs single runs");
     }
     let shown = comparison.measures.iter().any(|measure| measure.errors.is_some());
-    let meshes = if comparison.points.is_some() { meshes } else { &[] };
+    let of_runs = Meshes::default();
+    let meshes = if comparison.points.is_some() { meshes } else { &of_runs };
     for note in legend::mesh_errors(shown, comparison.table, meshes) {
         eprintln!("{note}");
     }

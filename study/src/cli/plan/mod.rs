@@ -72,7 +72,8 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     out.flush().map_err(output_error)?;
     if !args.quiet.quiet {
         eprintln!("{}: {}", study.name, summary(&study, &counts));
-        for line in wrapped(&assumptions(&generation.points).join("; "), ASSUMED.len()) {
+        let assumptions = assumptions(&generation.points, study.assumed()).join("; ");
+        for line in wrapped(&assumptions, ASSUMED.len()) {
             eprintln!("{ASSUMED}{line}");
         }
         print_progress_and_forecast(args, &study, &generation)?;
@@ -210,7 +211,7 @@ fn note(point: &Point, unit: &dyn Fn(&str) -> DisplayUnit) -> String {
 fn summary(study: &Study, counts: &PlanCounts) -> String {
     format!(
         "{}: {}, {}, {} infeasible; {} filtered out",
-        print::points_of_runs(study, counts.points),
+        print::points_of_runs(study, counts.points, 0),
         print::count(counts.jobs, "job"),
         print::count(counts.duplicates, "duplicate"),
         counts.infeasible,

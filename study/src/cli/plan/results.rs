@@ -3,10 +3,14 @@
 use billow_solver::scene::ModelKind;
 
 use crate::input::keys::MODELS;
+use crate::job::cost::Costs;
 use crate::job::row::ColumnId;
-use crate::print::count;
-use crate::study::Study;
+use crate::print::{count, duration};
 use crate::study::plan::{PlanCounts, borders};
+use crate::study::{Study, meshes_text};
+
+/// Points whose cost is asked, at most.
+const MAX_COSTED: usize = 20;
 
 /// Measures that only the film model computes.
 const FILM_ONLY: [ColumnId; 7] = [
@@ -23,13 +27,46 @@ const FILM_ONLY: [ColumnId; 7] = [
 pub(super) fn notes(study: &Study, counts: &PlanCounts) -> Vec<String> {
     let mut notes: Vec<String> = search(study, counts).into_iter().collect();
     notes.extend(limits(study));
+    notes.extend(pilots(study));
     notes
+}
+
+/// What the pilots of a study cost at most, and how it does without.
+fn pilots(study: &Study) -> Option<String> {
+    let meshes = study.meshes();
+    if !meshes.of_pilots {
+        return None;
+    }
+    let mut costs = Costs::default();
+    // Points that differ in the design differ in cost: the dearest of some.
+    let film = study.points().iter().filter(|point| point.infeasible.is_none());
+    let film = film.filter(|point| point.job.scene.solver.model == ModelKind::Film);
+    let film: Vec<_> = film.take(MAX_COSTED).collect();
+    let mesh = film.first()?.job.scene.design.subdivisions;
+    let others: Vec<u32> = meshes.list.iter().copied().filter(|n| *n != mesh).collect();
+    let seconds = others.iter().map(|n| {
+        let of_mesh = film.iter().map(|point| {
+            let mut scene = (*point.job.scene).clone();
+            scene.design.subdivisions = *n;
+            costs.seconds(&scene)
+        });
+        of_mesh.fold(0.0, f64::max)
+    });
+    let runs = study.most_pilots();
+    let seconds: f64 = runs as f64 * seconds.sum::<f64>();
+    Some(format!(
+        "pilots: up to {}, on n {} of the points nearest to a limit, about {} of core time; \"solver\": \
+         {{\"meshes\": [{mesh}]}} leaves them out",
+        count(runs * others.len(), "job"),
+        meshes_text(&others),
+        duration(libm::ceil(seconds)),
+    ))
 }
 
 /// How many jobs a search takes.
 fn search(study: &Study, counts: &PlanCounts) -> Option<String> {
     let (name, _) = study.searched()?;
-    let searches = borders(study, &[]);
+    let searches = borders(study, &[], &[]);
     let begins = searches.iter().map(|border| border.levels.len()).max().unwrap_or(0);
     let more = study.most_search_values()?.saturating_sub(begins) * study.replicate_count();
     Some(format!(

@@ -14,7 +14,7 @@ use crate::print::points::{PointTable, chosen_runs};
 use crate::print::print_table;
 use crate::print::{legend, notes};
 use crate::store::table::{Column, Table};
-use crate::study::Study;
+use crate::study::{Meshes, Study};
 use sort::{by_search, sorted};
 
 mod borders;
@@ -182,7 +182,7 @@ fn notes(
         let errors = error_column(&column.name).and_then(|name| table.column(name));
         errors.is_some_and(|errors| rows.iter().any(|row| errors.cells[*row] != Value::Null))
     };
-    let meshes = if args.runs { Vec::new() } else { meshes };
+    let meshes = if args.runs { Meshes::default() } else { meshes };
     notes.extend(legend::mesh_errors(columns.iter().any(has_error), table, &meshes));
     notes
 }

@@ -51,7 +51,8 @@ pub(crate) const STRUCTURED: &[(&str, &str)] = &[
     (
         "solver.meshes",
         "Meshes (design.subdivisions) on which each point runs, two or three, as in [4, 8]. Its row has the promised \
-         measures extrapolated from the two finest, with their error; --runs shows the runs.",
+         measures extrapolated from the two finest, with their error; --runs shows the runs. One, as in [4]: that mesh \
+         alone, without pilots. Default: design.subdivisions, with pilots where a limit needs an error.",
     ),
     ("grid", "What varies: every combination of the axes, the first varying slowest."),
     (
@@ -63,6 +64,12 @@ pub(crate) const STRUCTURED: &[(&str, &str)] = &[
         "limits",
         "What a result must meet to be safe, as in {\"peak_vz\": \"< 25 m/s\", \"verdict\": \"deployed\"}: columns of the \
          table with <, <=, > or >= and a quantity, a verdict, true or false. They change no job.",
+    ),
+    (
+        "assumed",
+        "Ranges of what is assumed, as in {\"loss_factor\": [0.01, 0.02], \"heat_transfer\": [0.1, 1]}: the columns \
+         <measure>_assumed and the limits count the change over them. Default: the ranges of the table of mesh errors, \
+         loss factor 0.003 to 0.03, heat transfer 0.1 to 1 W/(m2 K). They change no job.",
     ),
     (
         "units",

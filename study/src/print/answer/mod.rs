@@ -246,9 +246,11 @@ fn audit(trust: &Trust) -> String {
     let without_error = trust.no_error_reason.as_ref().map_or_else(String::new, |reason| {
         format!("; mesh error of {} not known: {reason}", count(trust.without_error, "job"))
     });
+    let of_pilots =
+        trust.pilots.as_ref().map_or_else(String::new, |text| format!("; mesh error: {text}"));
     format!(
         "{} done; ledger residual at most {} (energy_drift above {MAX_LEDGER_RESIDUAL}); \
-         {film}{damped}{not_trusted}{without_error}",
+         {film}{damped}{not_trusted}{without_error}{of_pilots}",
         count(trust.jobs, "job"),
         brief_number(trust.ledger_residual)
     )

@@ -14,6 +14,7 @@ use std::num::NonZero;
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::accuracy::AssumedRanges;
 use crate::input::json::Json;
 use crate::job::executor::Executor;
 use crate::job::limits::JobLimits;
@@ -56,6 +57,8 @@ pub struct Run<'a> {
     pub planner: &'a dyn Fn(&[FinishedRow]) -> Option<Generation>,
     /// What the results must meet to be safe.
     pub result_limits: &'a [ResultLimit],
+    /// The ranges of what is assumed.
+    pub assumed: &'a AssumedRanges,
     /// The table of the points planned so far, from the records of their jobs.
     pub table: &'a TableOf<'a>,
     /// The parameters of a job as text, for messages.

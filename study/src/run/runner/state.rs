@@ -261,7 +261,7 @@ impl<'a, 'w> State<'a, 'w> {
 
     /// Finished rows for the planner, in plan order.
     pub(super) fn finished(&self) -> Vec<FinishedRow> {
-        finished::rows(&self.points, &self.records, self.run.result_limits)
+        finished::rows(&self.points, &self.records, self.run.result_limits, self.run.assumed)
     }
 
     /// The result of the run so far.

@@ -33,7 +33,7 @@ pub const EXTRAPOLATED: &str = "_extrapolated";
 /// End of the name of its error.
 pub const EXTRAPOLATED_ERROR: &str = "_extrapolated_error";
 /// Meaning of its error, one line.
-pub const EXTRAPOLATED_ERROR_MEANING: &str = "mesh error of the extrapolated value: 9 of 10 runs are nearer to the value on the finest mesh of the table; outside the table of mesh errors it follows from three meshes and is null with two";
+pub const EXTRAPOLATED_ERROR_MEANING: &str = "mesh error of the extrapolated value: 19 of 20 runs are nearer to the value on the finest mesh of the table; outside the table of mesh errors it follows from three meshes and is null with two";
 
 /// Name of the column with the extrapolated values of a measure, and of that with their errors.
 pub fn names(measure: &str) -> [String; 2] {
@@ -63,8 +63,13 @@ impl Table {
     /// meshes where it has them.
     pub fn of_study(study: &Study, points: &[Point], records: &BTreeMap<JobId, Record>) -> Self {
         let unit = |name: &str| study.unit(name).to_owned();
-        let table = Self::build(points, records, &unit);
-        table.with_extrapolated(points, &study.meshes()).judged(study.result_limits())
+        let table = Self::build(points, records, &unit, study.assumed());
+        let meshes = study.meshes();
+        let mut table = table.with_extrapolated(points, &meshes.list);
+        if meshes.of_pilots {
+            table = table.with_pilots(points, &meshes.list);
+        }
+        table.judged(study.result_limits())
     }
 
     /// The table with the values extrapolated from these meshes, coarsest first, and their errors. `points` are
@@ -77,10 +82,12 @@ impl Table {
         let of_measure = |promised: &Promised| {
             let value = |row: usize| {
                 let scene = &points[row].point.job.scene;
-                if scene.design.subdivisions != *finest {
+                let rows = on_mesh.get(&self.other_parameters(row))?;
+                // A point without pilots has the mesh of the study alone.
+                let alone = rows.len() == 1;
+                if scene.design.subdivisions != *finest && !alone {
                     return None;
                 }
-                let rows = on_mesh.get(&self.other_parameters(row))?;
                 let value = |n: &u32| self.extrapolable(*rows.get(n)?, promised);
                 // Without a value on the coarsest of three meshes the two others still give one.
                 let finest_two = &meshes[meshes.len() - 2..];
@@ -151,7 +158,7 @@ impl Table {
     }
 
     /// The rows by their parameters without the mesh, and by the subdivisions of their mesh.
-    fn rows_by_mesh(&self) -> BTreeMap<Vec<String>, BTreeMap<u32, usize>> {
+    pub(super) fn rows_by_mesh(&self) -> BTreeMap<Vec<String>, BTreeMap<u32, usize>> {
         let mut rows: BTreeMap<Vec<String>, BTreeMap<u32, usize>> = BTreeMap::new();
         let Some(mesh) = self.parameters().find(|column| column.name == MESH_PARAMETER) else {
             return rows;
@@ -183,7 +190,7 @@ impl Table {
     }
 
     /// A measure of a trusted run; the state at the end only where the capsule is deployed.
-    fn extrapolable(&self, row: usize, promised: &Promised) -> Option<f64> {
+    pub(super) fn extrapolable(&self, row: usize, promised: &Promised) -> Option<f64> {
         let deployed = self.verdict(row).is_none_or(|verdict| verdict == Verdict::Deployed);
         match self.value(promised.measure, row) {
             Some(Value::Number(value))

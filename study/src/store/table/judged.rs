@@ -154,6 +154,7 @@ fn derived(column: DerivedColumn, cells: Vec<Value>) -> Column {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::accuracy::AssumedRanges;
     use crate::analysis::fixture::with_error;
     use crate::job::point::Point;
     use crate::job::result_limit::Condition;
@@ -178,7 +179,7 @@ mod tests {
             let record = Record { job: job.clone(), cells, file_hash: None, file_stamp: None };
             records.insert(job, record);
         }
-        Table::build(&points, &records, &|_| String::new())
+        Table::build(&points, &records, &|_| String::new(), &AssumedRanges::default())
     }
 
     #[test]

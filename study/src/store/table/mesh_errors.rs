@@ -8,16 +8,22 @@ use std::borrow::Cow;
 
 use super::Column;
 use super::same_job::PointRow;
-use crate::accuracy::{NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED, RowErrors};
+use crate::accuracy::{
+    AssumedRanges, NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED, RowErrors,
+};
 use crate::input::value::Value;
 use crate::job::row::{CellType, Cells};
 
 /// The columns of these rows.
-pub(super) fn columns(points: &[PointRow<'_>], rows: &[Cow<'_, Cells>]) -> Vec<Column> {
+pub(super) fn columns(
+    points: &[PointRow<'_>],
+    rows: &[Cow<'_, Cells>],
+    ranges: &AssumedRanges,
+) -> Vec<Column> {
     let all: Vec<RowErrors> = points
         .iter()
         .zip(rows)
-        .map(|(point, cells)| RowErrors::of(&point.point.job.scene, cells))
+        .map(|(point, cells)| RowErrors::of(&point.point.job.scene, cells, ranges))
         .collect();
     let number = |value: Option<f64>| value.map_or(Value::Null, Value::Number);
     let mut columns = Vec::new();

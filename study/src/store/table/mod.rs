@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 use billow_solver::output::measures::Verdict;
 
+use crate::accuracy::AssumedRanges;
 use crate::input::units::{DisplayUnit, DisplayUnits};
 use crate::input::value::Value;
 use crate::job::point::Point;
@@ -22,6 +23,7 @@ pub mod extrapolated;
 mod judged;
 mod mesh_errors;
 pub mod parquet;
+mod pilots;
 pub mod reference;
 pub mod same_job;
 pub mod select;
@@ -178,11 +180,12 @@ impl Column {
 }
 
 impl Table {
-    /// Builds the table of a plan. `unit` gives the SI unit of a parameter.
+    /// Builds the table of a plan. `unit` gives the SI unit of a parameter, `assumed` the ranges of what is assumed.
     pub fn build(
         points: &[Point],
         records: &BTreeMap<JobId, Record>,
         unit: &dyn Fn(&str) -> String,
+        assumed: &AssumedRanges,
     ) -> Self {
         let points = &same_job::point_rows(points);
         let ids = points.iter().map(|row| Value::Text(row.point.job.id.as_str().to_owned()));
@@ -200,7 +203,7 @@ impl Table {
             let kind = (column.cell_type, column.unit);
             columns.push(Column::new(name, kind, column.meaning, cells));
         }
-        columns.extend(mesh_errors::columns(points, &rows));
+        columns.extend(mesh_errors::columns(points, &rows, assumed));
         columns.push(same_job::column(points));
         Self { columns }
     }

@@ -3,6 +3,7 @@
 #![expect(clippy::disallowed_methods, reason = "tests read and write files directly")]
 
 use super::*;
+use crate::accuracy::AssumedRanges;
 use crate::run::fixture;
 
 fn built() -> Table {
@@ -18,7 +19,12 @@ fn built() -> Table {
         let record = Record { job: job.id.clone(), cells, file_hash: None, file_stamp: None };
         records.insert(job.id.clone(), record);
     }
-    Table::build(&points, &records, &|name| if name == "N" { "1".into() } else { "kg/s".into() })
+    Table::build(
+        &points,
+        &records,
+        &|name| if name == "N" { "1".into() } else { "kg/s".into() },
+        &AssumedRanges::default(),
+    )
 }
 
 fn cells<'a>(table: &'a Table, name: &str) -> &'a ColumnCells {
@@ -50,7 +56,8 @@ fn points_of_one_job_are_rows_that_name_each_other() {
     };
     // Given twice, N = 7 is one row; the cell of a job of many points stays short.
     points[0].merged = [7, 7, 8, 9, 10, 11, 12, 13, 14, 15].map(with).to_vec();
-    let table = Table::build(&points, &BTreeMap::new(), &|_| String::new());
+    let table =
+        Table::build(&points, &BTreeMap::new(), &|_| String::new(), &AssumedRanges::default());
     assert_eq!(table.rows(), 11);
     let jobs = cells(&table, "job");
     assert!(jobs[0] == jobs[9] && jobs[9] != jobs[10]);
@@ -82,7 +89,7 @@ fn a_table_written_twice_has_the_same_bytes_and_every_cell_counts() {
         changed.columns[2].cells[2] = cell;
         assert_ne!(bytes(&changed), before);
     }
-    bytes(&Table::build(&[], &BTreeMap::new(), &|_| String::new()));
+    bytes(&Table::build(&[], &BTreeMap::new(), &|_| String::new(), &AssumedRanges::default()));
     let threads = std::fs::read_dir("/proc/self/task").unwrap().filter(|thread| {
         let name = thread.as_ref().unwrap().path().join("comm");
         std::fs::read_to_string(name).unwrap_or_default().starts_with("polars")

@@ -113,6 +113,11 @@ impl<'a> Replay<'a> {
         points
     }
 
+    /// Judges by these rows from now on.
+    pub fn judge_by(&mut self, finished: &'a [FinishedRow]) {
+        self.finished = finished.iter().map(|row| (&row.id, row)).collect();
+    }
+
     /// What the searches have found.
     pub fn borders(&self) -> Vec<Border> {
         let grid = &self.study.grid;
@@ -161,15 +166,16 @@ impl<'a> Replay<'a> {
 
 /// What is known of a row's criterion; `None` where nothing can be said.
 fn known(criterion: Criterion, row: &FinishedRow) -> Option<Safety> {
+    let limits = || row.limits.iter().map(|judged| judged.map(|judged| judged.as_far_as_known()));
     match criterion {
         Criterion::Deployed => row.verdict.map(|verdict| match verdict {
             Verdict::Deployed => Safety::Safe,
             _ => Safety::Unsafe,
         }),
-        Criterion::Limit(index) => row.limits.get(index).copied().flatten(),
-        Criterion::Safe if row.limits.contains(&Some(Safety::Unsafe)) => Some(Safety::Unsafe),
-        Criterion::Safe => {
-            row.limits.iter().try_fold(Safety::Safe, |all, one| Some(all.max((*one)?)))
+        Criterion::Limit(index) => limits().nth(index).flatten(),
+        Criterion::Safe if limits().flatten().any(|safety| safety == Safety::Unsafe) => {
+            Some(Safety::Unsafe)
         }
+        Criterion::Safe => limits().try_fold(Safety::Safe, |all, one| Some(all.max(one?))),
     }
 }

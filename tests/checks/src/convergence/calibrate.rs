@@ -4,7 +4,7 @@
 //! v = m/m_ref − 1        one run; m_ref: median of the runs of its scene on the finest mesh
 //! where it has none:  m_ref = m_next/(1 + b_next(x))     m_next on the next mesh, b_next(x) from the scenes with both
 //! bias of a scene = median of v;  bias(x): [`super::regression`] over all scenes
-//! width = the distance from bias(x) that nine of ten runs keep, each predicted from all other scenes
+//! width = the distance from bias(x) that 19 of 20 runs keep, each predicted from all other scenes
 //! of an assumed value: v = m'/m − 1, m' the run with that value, m the median of the scene on the same mesh
 //! ```
 //! A value extrapolated from two meshes is m₂ + w (m₂ − m₁), with the weight w for which it is nearest to the value on
@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use billow_solver::scene::ModelKind;
 
-use super::regression::{Point, nine_of_ten, regression};
+use super::regression::{Point, nineteen_of_twenty, regression};
 use super::runs::{MeshRun, SceneRuns};
 use billow_study::accuracy::features::FEATURES;
 use billow_study::accuracy::table::{FORMAT, VERSION};
@@ -210,7 +210,7 @@ fn entries(
             weight: rounded(weight),
             bias: rounded(fitted.intercept),
             slopes: fitted.slopes.map(rounded),
-            width: rounded(nine_of_ten(distances.collect(), points.len())),
+            width: rounded(nineteen_of_twenty(distances.collect(), points.len())),
             runs: values.iter().map(Vec::len).sum(),
             scenes: points.len(),
         })
