@@ -36,10 +36,20 @@ impl RowErrors {
         };
         let table = MeshErrors::shipped();
         let features = Features::of(scene, top_radius, height);
-        if let Some(gap) = table.gap(scene, &features) {
-            return Self { reason: Some(gap), ..Self::NONE };
-        }
         let method = Method::of(scene);
+        let assumed = |features: &Features| {
+            PROMISED.map(|promised| {
+                let value = cells.number(promised.measure)?;
+                Some(table.assumed(features, &promised, ranges)? * value.abs())
+            })
+        };
+        if let Some(gap) = table.gap(scene, &features) {
+            // What is assumed changes other scenes too: as much as in the middle of the table.
+            let middle = Features { values: table.coordinates.base };
+            let film = method.model == ModelKind::Film;
+            let assumed = if film { assumed(&middle) } else { Self::NONE.assumed };
+            return Self { reason: Some(gap), assumed, ..Self::NONE };
+        }
         if method.model != ModelKind::Film {
             let known = PROMISED.map(|promised| table.error(&method, &features, &promised));
             let reason = match known.iter().find_map(|error| error.as_ref().ok()) {
@@ -64,11 +74,7 @@ impl RowErrors {
                 }
             }
         });
-        let assumed = PROMISED.map(|promised| {
-            let value = cells.number(promised.measure)?;
-            Some(table.assumed(&features, &promised, ranges)? * value.abs())
-        });
-        Self { errors, assumed, reason }
+        Self { errors, assumed: assumed(&features), reason }
     }
 
     /// Uncertainty of a value of this row.
@@ -92,19 +98,29 @@ pub fn uncertainty(
     reason: Option<&str>,
     parts: impl Fn(usize) -> [Option<f64>; 2],
 ) -> Option<f64> {
-    let column = measure.column();
     if measure == ColumnId::Verdict {
         let known =
             reason.is_none_or(|reason| !is_unknown(reason) && !reason.contains(VERDICTS_DIFFER));
         return known.then_some(if near_threshold { f64::INFINITY } else { 0.0 });
     }
-    let of_motion = matches!(column.group, ColumnGroup::Measures | ColumnGroup::Outcome);
-    if column.cell_type != CellType::Number || !of_motion {
+    if depends_on_no_mesh(measure) {
         return Some(0.0);
     }
-    let promised = promise(column.name)?;
+    let promised = promise(measure.name())?;
     let [error, assumed] = parts(PROMISED.iter().position(|one| one == promised)?);
     Some(libm::hypot(error?, assumed.unwrap_or(0.0)))
+}
+
+/// Whether a column is no measure of the motion: a count, a word, a number of the audit.
+fn depends_on_no_mesh(column: ColumnId) -> bool {
+    let column = column.column();
+    let of_motion = matches!(column.group, ColumnGroup::Measures | ColumnGroup::Outcome);
+    column.cell_type != CellType::Number || !of_motion
+}
+
+/// Whether the error of a measure can be known, or it needs none.
+pub fn has_error(measure: ColumnId) -> bool {
+    depends_on_no_mesh(measure) || promise(measure.name()).is_some()
 }
 
 /// Why rows of a model without mesh have no error, though the table knows it.

@@ -251,7 +251,7 @@ fn the_shipped_table_is_that_of_this_physics_and_agrees_with_the_names_of_the_co
             let method = Method { model: ModelKind::Film, meshes: vec![n] };
             let error = table.error(&method, &features(&paper), promised).unwrap();
             for part in [error.of_reference, error.of_itself] {
-                assert!((1e-4..1.5).contains(&part), "{name} n {n}: {part}");
+                assert!((1e-4..2.5).contains(&part), "{name} n {n}: {part}");
             }
         }
         let assumed =

@@ -208,16 +208,20 @@ impl Runs {
     }
 }
 
-/// Of the runs of a point, those on the finest mesh, where values are extrapolated from several.
+/// Of the runs of a point, those on the mesh that stands for it, where values are extrapolated from several: the finest
+/// of those on which most of them have a value, so that a pilot counts only once all its runs do.
 fn finest(table: &Table, rows: &[usize]) -> Vec<usize> {
     let mesh = table.parameters().find(|column| column.name == MESH_PARAMETER);
     let Some(mesh) = mesh.filter(|_| table.has_extrapolated()) else { return rows.to_vec() };
-    let n = |row: usize| match mesh.cells[row] {
-        Value::Integer(n) => n,
-        _ => 0,
-    };
-    let largest = rows.iter().map(|row| n(*row)).max();
-    rows.iter().copied().filter(|row| Some(n(*row)) == largest).collect()
+    let mut with_value: BTreeMap<i64, usize> = BTreeMap::new();
+    for row in rows {
+        if let Value::Integer(n) = mesh.cells[*row] {
+            *with_value.entry(n).or_default() += usize::from(table.is_extrapolated_at(*row));
+        }
+    }
+    let best = with_value.into_iter().max_by_key(|(n, count)| (*count, *n)).map(|(n, _)| n);
+    let is_best = |row: &usize| best.is_some_and(|best| mesh.cells[*row] == Value::Integer(best));
+    rows.iter().copied().filter(is_best).collect()
 }
 
 /// The column with the values that a point takes for a measure: the extrapolated ones, where there are.

@@ -11,8 +11,8 @@ use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::study::{JOB_LIMITS, Study, UNITS};
 
-/// The study of a given file where it differs from that of the results in its limits alone: limits judge stored rows and
-/// change no job. Says on stderr in which keys it differs.
+/// The study of a given file where it differs from that of the results in its limits, or the ranges of what is assumed,
+/// alone: these judge stored rows and change no job. Says on stderr in which keys it differs.
 ///
 /// # Errors
 /// A study.json that cannot be read.
@@ -21,15 +21,26 @@ pub fn other_limits(of: &Stored<'_>, study: Study, path: &Path) -> Result<Option
     if of.results.holds(&study.name, study.file())? {
         return Ok(None);
     }
-    if study.result_limits() != stored.result_limits() && stored.plans_as(&study) {
+    let judges_as =
+        (study.result_limits(), study.assumed()) == (stored.result_limits(), stored.assumed());
+    if !judges_as && stored.plans_as(&study) {
         let limits = |study: &Study| match study.result_limits() {
             [] => "none".to_owned(),
             limits => limits.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
         };
         let next = match study.searched() {
             Some(_) => format!("; `billow run {}` continues the search", path.display()),
+            None if study.meshes().of_pilots => {
+                format!("; `billow run {}` runs the pilots that these limits need", path.display())
+            }
             None => String::new(),
         };
+        if study.assumed() != stored.assumed() {
+            eprintln!("note: the last run had other ranges of what is assumed");
+        }
+        if study.result_limits() == stored.result_limits() {
+            return Ok(Some(study));
+        }
         eprintln!("note: limits {}; the last run had {}{next}", limits(&study), limits(stored));
         return Ok(Some(study));
     }

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use crate::accuracy::{MeshErrors, NO_ERROR_REASON, is_unknown};
+use crate::accuracy::{MeshErrors, NO_ERROR_REASON, is_of_pilots, is_unknown};
 use crate::analysis::replicates::is_mesh;
 use crate::input::value::Value;
 use crate::print::count;
@@ -61,17 +61,18 @@ pub fn mesh_errors(shown: bool, table: &Table, meshes: &Meshes) -> Vec<String> {
         ));
     }
     let reasons = table.column(NO_ERROR_REASON).into_iter().flat_map(|column| column.cells.iter());
-    let mut gaps = reasons.filter_map(|cell| match cell {
-        Value::Text(text) if is_unknown(text) => Some(text),
+    let texts = reasons.filter_map(|cell| match cell {
+        Value::Text(text) => Some(text.as_str()),
         _ => None,
     });
-    if meshes.of_pilots {
+    let (known, gaps): (Vec<&str>, Vec<&str>) = texts.partition(|text| !is_unknown(text));
+    if shown && known.into_iter().any(is_of_pilots) {
         notes.push(
             "where the table does not reach: the largest error of the pilots (no_error_reason)"
                 .to_owned(),
         );
     }
-    let Some(gap) = gaps.next() else { return notes };
+    let Some(gap) = gaps.first() else { return notes };
     let on_all = if meshes.of_pilots { 0 } else { meshes.list.len() };
     notes.push(match on_all {
         0 => format!("rows without ± have no known error (no_error_reason): {gap}; {THREE_MESHES}"),

@@ -7,11 +7,13 @@ use billow_solver::integrators::{self, Refusal};
 use billow_solver::scene::{Film, ModelKind, Scene};
 
 use super::legend::THREE_MESHES;
-use crate::accuracy::{Features, MeshErrors, Method, choice};
+use crate::accuracy::row::has_error;
+use crate::accuracy::{Features, MeshErrors, Method, PROMISED, choice};
 use crate::input::keys::numerical::{MESH_PARAMETER, SEED};
 use crate::input::keys::{MODELS, Model};
 use crate::input::value::{Value, brief_number};
 use crate::job::point::Point;
+use crate::job::row::ColumnId;
 use crate::study::ground::pressure_below_ambient;
 use crate::study::{Meshes, Study, features, meshes_text};
 
@@ -39,6 +41,7 @@ fn of_points(study: &Study) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     lines.extend(of_meshes(study));
     lines.extend(without_error(study));
+    lines.extend(limits_without_error(study));
     let given = |meshes: Meshes| !meshes.list.is_empty() && !meshes.of_pilots;
     let subdivisions = study.key(MESH_PARAMETER).filter(|_| given(study.meshes()));
     if let Some(given) = subdivisions.filter(|key| key.value != key.key.default_value()) {
@@ -154,6 +157,21 @@ fn without_error(study: &Study) -> Option<String> {
         _ => "; no limit is met for certain there",
     };
     Some(format!("{known}{limits}; {THREE_MESHES}"))
+}
+
+/// Limits on measures of which no error is known, whatever the scene.
+fn limits_without_error(study: &Study) -> Option<String> {
+    let limits = study.result_limits().iter().map(|limit| limit.measure);
+    let without: Vec<&str> =
+        limits.filter(|measure| !has_error(*measure)).map(ColumnId::name).collect();
+    (!without.is_empty()).then(|| {
+        let known: Vec<&str> = PROMISED.iter().map(|promised| promised.measure.name()).collect();
+        format!(
+            "note: the error of {} is not known on any mesh, so no limit on it is met for certain; it is known of {}",
+            without.join(", "),
+            known.join(", ")
+        )
+    })
 }
 
 /// A note on capsules whose gas has less than ambient pressure at the start.

@@ -103,7 +103,18 @@ impl<'a> Stored<'a> {
     /// The table of one job: a row for each of its points. `None` for a job that no row shows.
     pub fn table_of(&self, id: &JobId) -> Option<Table> {
         let point = self.point(id)?;
-        Some(self.built(std::slice::from_ref(point)))
+        if !self.study.meshes().of_pilots {
+            return Some(self.built(std::slice::from_ref(point)));
+        }
+        // Only the whole table knows the errors of the pilots.
+        let mut table = self.table();
+        let ids = table.column("job")?.cells.clone();
+        let id = Value::Text(id.as_str().to_owned());
+        let rows: Vec<usize> = (0..ids.len()).filter(|row| ids[*row] == id).collect();
+        for column in &mut table.columns {
+            column.cells = rows.iter().map(|row| column.cells[*row].clone()).collect();
+        }
+        Some(table)
     }
 
     /// The table of these points, shown in the study's units.
@@ -123,7 +134,8 @@ impl<'a> Stored<'a> {
 
     /// Number of runs of pilots among them.
     pub fn pilot_runs(&self) -> usize {
-        self.points.iter().filter(|point| self.study.is_pilot(point)).count()
+        let pilots = self.points.iter().filter(|point| self.study.is_pilot(point));
+        pilots.map(|point| 1 + point.merged.len()).sum()
     }
 
     /// What the searches of the study have found so far.

@@ -16,6 +16,7 @@ pub(super) fn read(json: Option<&Json>, source: &Source) -> Result<AssumedRanges
     let mut ranges = AssumedRanges::default();
     let Some(json) = json else { return Ok(ranges) };
     let known = AssumedRanges::default();
+    let mut given = Vec::new();
     for (name, value) in object(json, &STUDY, ASSUMED, source)? {
         let path = format!("{ASSUMED}.{name}");
         let index = keys::find(name);
@@ -24,6 +25,10 @@ pub(super) fn read(json: Option<&Json>, source: &Source) -> Result<AssumedRanges
             let allowed = ASSUMED_KEYS.join(" and ");
             return Err(source.error(&path, value, "is not among what is assumed", allowed));
         };
+        if given.contains(&position) {
+            return Err(source.error(&path, value, "is given twice", "each key once"));
+        }
+        given.push(position);
         let key = &KEYS[index];
         let ([least, most], base) = (known.0[position], assumed_value(key.path));
         let allowed = format!(
@@ -78,6 +83,10 @@ mod tests {
             (r#"{"loss_factor": [0.001, 0.02]}"#, "from 0.003 to 0.03 1, about the default 0.015"),
             (r#"{"loss_factor": [0.02, 0.03]}"#, "is not a range that the table"),
             (r#"{"loss_factor": [0.01]}"#, "is not a range"),
+            (
+                r#"{"loss_factor": [0.01, 0.02], "film.loss_factor": [0.01, 0.03]}"#,
+                "is given twice",
+            ),
             (r#"{"thickness": [1, 2]}"#, "film.loss_factor and gas.heat_transfer"),
         ] {
             let error = study(text).unwrap_err();

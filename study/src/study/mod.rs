@@ -46,6 +46,7 @@ use crate::input::source::Source;
 use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
 use crate::input::{study_file, syntax};
+use crate::job::JobId;
 use crate::job::limits::JobLimits;
 use crate::job::point::{Point, Searched};
 use crate::job::result_limit::ResultLimit;
@@ -228,8 +229,12 @@ impl Study {
 
     /// Whether a planned point is the run of a pilot on another mesh than that of the study.
     pub(crate) fn is_pilot(&self, point: &Point) -> bool {
-        self.pilots.is_some()
-            && point.job.scene.design.subdivisions != self.points[0].job.scene.design.subdivisions
+        self.mesh_of_pilots().is_some_and(|mesh| point.job.scene.design.subdivisions != mesh)
+    }
+
+    /// The mesh of its points, where it has pilots.
+    pub(crate) fn mesh_of_pilots(&self) -> Option<u32> {
+        self.pilots.map(|_| self.points[0].job.scene.design.subdivisions)
     }
 
     /// The most pilots that it can have, one for each run of a point.
@@ -286,9 +291,20 @@ impl Study {
         &self.file
     }
 
-    /// Whether another study plans the same points in the same order.
+    /// Whether another study plans the same jobs in the same order, apart from pilots.
     pub fn plans_as(&self, other: &Self) -> bool {
-        (&self.points, &self.grid) == (&other.points, &other.grid)
+        let grid = |study: &Self| {
+            let mut grid = study.grid.clone();
+            if study.pilots.is_some() {
+                grid.columns.pop();
+                grid.axes.pop();
+            }
+            grid
+        };
+        let jobs = |study: &Self| -> Vec<JobId> {
+            study.points.iter().map(|point| point.job.id.clone()).collect()
+        };
+        grid(self) == grid(other) && jobs(self) == jobs(other)
     }
 
     /// Values that are probably mistaken: likely forgotten units, and times that do not fit the run.

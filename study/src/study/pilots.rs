@@ -11,13 +11,13 @@ use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use billow_solver::scene::ModelKind;
+use billow_solver::scene::{ModelKind, Scene};
 
 use super::column::Column;
 use super::finished::FinishedRow;
 use super::grid::{Axis, AxisKind, Grid};
 use super::meshes::{SUBDIVISIONS, features};
-use crate::accuracy::{MeshErrors, promised};
+use crate::accuracy::{Features, MeshErrors, promised};
 use crate::input::keys::{KEYS, short_name};
 use crate::input::settings::Settings;
 use crate::input::value::Value;
@@ -40,24 +40,30 @@ pub(super) fn meshes(
     limits: &[ResultLimit],
     points: &[Point],
 ) -> Option<[u32; MESHES]> {
-    let is_promised = |limit: &ResultLimit| {
-        limit.measure == ColumnId::Verdict || promised::promise(limit.measure.name()).is_some()
-    };
-    if !limits.iter().any(is_promised) || grid.columns.iter().any(|c| c.index == SUBDIVISIONS) {
+    if !limits.iter().any(needs_error) || grid.columns.iter().any(|c| c.index == SUBDIVISIONS) {
         return None;
     }
-    let table = MeshErrors::shipped();
-    let is_outside = |point: &Point| {
-        features(point).is_some_and(|(scene, features)| {
-            scene.solver.model == ModelKind::Film && table.gap(scene, &features).is_some()
-        })
-    };
     points.iter().find(|point| is_outside(point))?;
+    let table = MeshErrors::shipped();
     let Value::Integer(n) = settings.at(SUBDIVISIONS) else { return None };
     let known = table.meshes();
     let position = known.iter().position(|mesh| i64::from(*mesh) == *n)?;
     let first = position.min(known.len().checked_sub(MESHES)?);
     known[first..first + MESHES].try_into().ok()
+}
+
+/// Whether a limit needs a mesh error, and pilots can give it.
+fn needs_error(limit: &ResultLimit) -> bool {
+    limit.measure == ColumnId::Verdict || promised::promise(limit.measure.name()).is_some()
+}
+
+/// Whether a point is of film, and outside the table of mesh errors.
+fn is_outside(point: &Point) -> bool {
+    let is_outside = |(scene, values): (&Scene, Features)| {
+        let is_film = scene.solver.model == ModelKind::Film;
+        is_film && MeshErrors::shipped().gap(scene, &values).is_some()
+    };
+    features(point).is_some_and(is_outside)
 }
 
 /// Adds the mesh to the parameters of a study with pilots: it distinguishes the rows of several meshes.
@@ -100,7 +106,7 @@ pub(super) fn points(
     // A word has no distance: it counts where all limits are words.
     let nearest = |point: &Point| {
         let row = by_id.get(&point.job.id)?;
-        let judged = limits.iter().zip(&row.limits);
+        let judged = limits.iter().zip(&row.limits).filter(|(limit, _)| needs_error(limit));
         let judged = judged.filter_map(|(limit, judged)| {
             let is_word = matches!(limit.condition, Condition::Is(_));
             Some((is_word, judged.filter(|judged| judged.uncertainty.is_none())?))
@@ -112,7 +118,7 @@ pub(super) fn points(
     // Runs of one point stand together: its nearest run decides.
     let mut groups: Vec<(Vec<String>, Option<Judged>, Vec<&Point>)> = Vec::new();
     let mut positions: BTreeMap<Vec<String>, usize> = BTreeMap::new();
-    for point in planned.iter().filter(|point| point.infeasible.is_none()) {
+    for point in planned.iter().filter(|point| is_outside(point)) {
         let key = key(point);
         let position = *positions.entry(key.clone()).or_insert(groups.len());
         if position == groups.len() {

@@ -71,7 +71,9 @@ pub fn next_jobs(study: &Study, finished: &[FinishedRow]) -> Option<Generation> 
     if is_open(study.points()) || finished.is_empty() {
         return Some(generation(0, study.points()));
     }
-    let mut planned = generation(0, study.points()).points;
+    let has_pilots = study.meshes().of_pilots;
+    let mut planned =
+        if has_pilots { generation(0, study.points()).points } else { Arc::default() };
     let mut number = 1;
     if let Some(mut replay) = Replay::new(study, finished) {
         loop {
@@ -83,8 +85,10 @@ pub fn next_jobs(study: &Study, finished: &[FinishedRow]) -> Option<Generation> 
                 return Some(generation(number, &points));
             }
             replay.add(&points);
+            if has_pilots {
+                add_generation(&mut planned, generation(number, &points));
+            }
             number += 1;
-            add_generation(&mut planned, generation(number, &points));
         }
     }
     let pilots = Arc::new(study.pilots(&planned, finished));

@@ -115,7 +115,7 @@ fn pilots_give_an_error_outside_the_table_and_can_be_left_out() {
 fn the_ends_of_a_border_have_pilots_outside_the_table() {
     let mut study = film(&json!({
         "contact": {"friction": 0.2}, "limits": {"peak_speed": "< 20 m/s"},
-        "grid": {"mass_flow_rate": {"bisect": ["1 g/s", "16 g/s"], "on": "safe", "tolerance": "20 %", "spacing": "log"}}
+        "grid": {"mass_flow_rate": {"bisect": ["0.5 g/s", "64 g/s"], "on": "safe", "tolerance": "20 %", "spacing": "log"}}
     }));
     study["design"]["subdivisions"] = json!(2);
     study["solver"] = json!({"model": "film", "end_time": "60 ms"});

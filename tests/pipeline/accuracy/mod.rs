@@ -68,4 +68,7 @@ fn a_limit_counts_as_met_only_beyond_the_uncertainty_of_the_measure() {
     assert_eq!(safety, ["safe", "uncertain", "uncertain", "unsafe"]);
     let other = folder.stdout(&["table", "grid.json", "--json", "--set", "limits.overshoot=< 9"]);
     assert!(other.contains("\"safety\": \"uncertain\""), "no error is known: {other}");
+    let plan = stderr(&folder.run(&["plan", "grid.json", "--set", "limits.overshoot=< 9"]));
+    assert!(plan.contains("note: the error of overshoot is not known on any mesh"), "{plan}");
+    assert!(!plan.contains("the error of peak_speed"), "{plan}");
 }

@@ -317,7 +317,7 @@ fn extreme(
         shown: column.shown.clone(),
         others,
         within_mesh_error: equal.len(),
-        extrapolated: column.name != raw.name,
+        extrapolated: column.cells[row] != raw.cells[row],
         trusted: table.is_trusted(row),
     })
 }

@@ -101,11 +101,14 @@ fn run_changed(
     let mut changed = Vec::new();
     for id in jobs {
         let Some(point) = stored.point(id) else { continue };
-        // A searched value is in no plan from the start.
+        // A searched value, or the mesh of a pilot, is in no plan from the start.
+        sets.truncate(args.set.set.len());
         let value = searched.as_ref().and_then(|name| parameter(point, name));
         if let (Some(name), Some(value)) = (&searched, value) {
-            sets.truncate(args.set.set.len());
             sets.push(format!("{name}={value}"));
+        }
+        if stored.study.is_pilot(point) {
+            sets.push(format!("solver.meshes=[{}]", point.job.scene.design.subdivisions));
         }
         let study = Study::load(&stored.results.study_path(), &sets)?;
         let planned = plan::next_jobs(&study, &[]).map(|generation| generation.points);

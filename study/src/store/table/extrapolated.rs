@@ -65,37 +65,48 @@ impl Table {
         let unit = |name: &str| study.unit(name).to_owned();
         let table = Self::build(points, records, &unit, study.assumed());
         let meshes = study.meshes();
-        let mut table = table.with_extrapolated(points, &meshes.list);
-        if meshes.of_pilots {
-            table = table.with_pilots(points, &meshes.list);
+        let of_study = study.mesh_of_pilots();
+        let mut table = table.with_extrapolated(points, &meshes.list, of_study);
+        if let Some(mesh) = of_study {
+            table = table.with_pilots(points, &meshes.list, mesh);
         }
         table.judged(study.result_limits())
     }
 
-    /// The table with the values extrapolated from these meshes, coarsest first, and their errors. `points` are
-    /// those of its rows.
+    /// The table with the values extrapolated from these meshes, coarsest first, and their errors. `points` are those of
+    /// its rows. `of_study` is the mesh of a study with pilots: its rows keep their values, and a row on the finest mesh
+    /// has one only with runs on all.
     #[must_use]
-    pub fn with_extrapolated(mut self, points: &[Point], meshes: &[u32]) -> Self {
+    pub fn with_extrapolated(
+        mut self,
+        points: &[Point],
+        meshes: &[u32],
+        of_study: Option<u32>,
+    ) -> Self {
         let Some(finest) = meshes.last().filter(|_| meshes.len() > 1) else { return self };
         let points = point_rows(points);
         let on_mesh = self.rows_by_mesh();
         let of_measure = |promised: &Promised| {
             let value = |row: usize| {
                 let scene = &points[row].point.job.scene;
-                let rows = on_mesh.get(&self.other_parameters(row))?;
-                // A point without pilots has the mesh of the study alone.
-                let alone = rows.len() == 1;
-                if scene.design.subdivisions != *finest && !alone {
-                    return None;
+                let n = scene.design.subdivisions;
+                let alone = || {
+                    let keeps = of_study.is_none_or(|mesh| mesh == n);
+                    keeps.then(|| self.of_one_mesh(row, promised)).flatten()
+                };
+                if n != *finest {
+                    return of_study.and_then(|_| alone());
                 }
+                let rows = on_mesh.get(&self.other_parameters(row))?;
                 let value = |n: &u32| self.extrapolable(*rows.get(n)?, promised);
                 // Without a value on the coarsest of three meshes the two others still give one.
-                let finest_two = &meshes[meshes.len() - 2..];
-                let used = [meshes, finest_two].into_iter().find_map(|meshes| {
+                let least = if of_study.is_some() { meshes.len() } else { 2 };
+                let used = [meshes, &meshes[meshes.len() - least..]];
+                let used = used.into_iter().find_map(|meshes| {
                     let values: Option<Vec<f64>> = meshes.iter().map(value).collect();
                     Some((meshes, values?))
                 });
-                let Some((meshes, values)) = used else { return self.of_one_mesh(row, promised) };
+                let Some((meshes, values)) = used else { return alone() };
                 let features = self.features(row, scene)?;
                 Some(extrapolated(promised, scene, &features, meshes, &values))
             };
@@ -155,6 +166,12 @@ impl Table {
     /// Whether it has extrapolated values.
     pub fn has_extrapolated(&self) -> bool {
         self.columns.iter().any(|column| is_extrapolated(&column.name))
+    }
+
+    /// Whether a row has a value in a column of extrapolated ones.
+    pub fn is_extrapolated_at(&self, row: usize) -> bool {
+        let mut columns = self.columns.iter().filter(|column| is_extrapolated(&column.name));
+        columns.any(|column| column.cells[row] != Value::Null)
     }
 
     /// The rows by their parameters without the mesh, and by the subdivisions of their mesh.

@@ -5,6 +5,8 @@
 //! ```
 //! Here `m_n` is a pilot's value on the mesh of the study, m its value extrapolated from three meshes, e the error of m.
 
+use std::collections::BTreeMap;
+
 use billow_solver::scene::ModelKind;
 
 use super::extrapolated::{SINCE_RELEASE, names};
@@ -16,20 +18,27 @@ use crate::job::point::Point;
 
 impl Table {
     /// The table with the mesh errors of the pilots in the rows of film that have none. `points` are those of its rows;
-    /// it has the values extrapolated from these meshes.
-    pub(super) fn with_pilots(mut self, points: &[Point], meshes: &[u32]) -> Self {
+    /// it has the values extrapolated from these meshes, of which `mesh` is that of the study. A measure without an error
+    /// at one of the pilots, as one whose run failed or is pending, has none in the other rows.
+    pub(super) fn with_pilots(mut self, points: &[Point], meshes: &[u32], mesh: u32) -> Self {
         let is_film: Vec<bool> = point_rows(points)
             .iter()
             .map(|row| row.point.job.scene.solver.model == ModelKind::Film)
             .collect();
-        let pilots: Vec<[usize; 2]> = self.pilots(meshes);
+        let by_mesh = self.rows_by_mesh();
+        let pilots: Vec<&BTreeMap<u32, usize>> =
+            by_mesh.values().filter(|rows| rows.len() > 1).collect();
         let reasons = self.reasons();
         let is_open =
             |row: &usize| is_film[*row] && reasons[*row].as_deref().is_some_and(is_unknown);
         let open: Vec<usize> = (0..self.rows()).filter(is_open).collect();
+        let mut filled = false;
         for promised in &PROMISED {
-            let largest = pilots.iter().filter_map(|pilot| self.of_pilot(promised, *pilot));
-            let Some(largest) = largest.reduce(f64::max) else { continue };
+            let largest: Option<Vec<f64>> =
+                pilots.iter().map(|rows| self.of_pilot(promised, rows, meshes, mesh)).collect();
+            let largest = largest.and_then(|errors| errors.into_iter().reduce(f64::max));
+            let Some(largest) = largest else { continue };
+            filled = true;
             let since = SINCE_RELEASE.iter().filter(|(_, measure)| *measure == promised.measure);
             let measures = since.map(|(since, _)| *since).chain([promised.measure]);
             let extrapolated: Vec<[String; 2]> = measures.map(|one| names(one.name())).collect();
@@ -44,9 +53,13 @@ impl Table {
                 }
             }
         }
-        let verdicts = |[first, finest]: &[usize; 2]| self.verdict(*first) == self.verdict(*finest);
-        let agree = pilots.iter().all(verdicts);
-        if let Some(column) = self.cells_mut(NO_ERROR_REASON).filter(|_| !pilots.is_empty()) {
+        // The verdict is certain where no pilot changes it.
+        let agrees = |rows: &&BTreeMap<u32, usize>| {
+            let verdicts: Vec<_> = rows.values().map(|row| self.verdict(*row)).collect();
+            verdicts.iter().all(|verdict| verdict.is_some() && *verdict == verdicts[0])
+        };
+        let agree = pilots.iter().all(agrees);
+        if let Some(column) = self.cells_mut(NO_ERROR_REASON).filter(|_| filled) {
             for row in open {
                 let Some(gap) = &reasons[row] else { continue };
                 column[row] = Value::Text(of_pilots(gap, meshes, agree));
@@ -55,29 +68,31 @@ impl Table {
         self
     }
 
-    /// The rows of each pilot on the mesh of the study and on the finest.
-    fn pilots(&self, meshes: &[u32]) -> Vec<[usize; 2]> {
-        let by_mesh = self.rows_by_mesh();
-        let on_all = by_mesh.values().filter(|rows| meshes.iter().all(|n| rows.contains_key(n)));
-        let trusted = |row: &usize| self.is_trusted(*row);
-        // The first row of a point is that of the study itself.
-        let rows = on_all.filter_map(|rows| {
-            let first = rows.values().min()?;
-            let finest = rows.get(meshes.last()?)?;
-            rows.values().all(trusted).then_some([*first, *finest])
-        });
-        rows.collect()
-    }
-
-    /// Error of a measure of a pilot on the mesh of the study, over its value.
-    fn of_pilot(&self, promised: &Promised, [first, finest]: [usize; 2]) -> Option<f64> {
+    /// Error of a measure of a pilot on the mesh of the study, over its value there; 0 where the run has no value on any
+    /// mesh, `None` where it is not known.
+    fn of_pilot(
+        &self,
+        promised: &Promised,
+        rows: &BTreeMap<u32, usize>,
+        meshes: &[u32],
+        mesh: u32,
+    ) -> Option<f64> {
+        let on = |n: &u32| rows.get(n).copied();
+        let all: Vec<usize> = meshes.iter().map(on).collect::<Option<_>>()?;
+        if !all.iter().all(|row| self.is_trusted(*row)) {
+            return None;
+        }
+        if all.iter().all(|row| self.extrapolable(*row, promised).is_none()) {
+            return Some(0.0);
+        }
+        let of_study = self.extrapolable(on(&mesh)?, promised).filter(|value| *value != 0.0)?;
+        let finest = *all.last()?;
         let number = |name: &str| match self.column(name)?.cells[finest] {
             Value::Number(number) => Some(number),
             _ => None,
         };
         let [value, error] = names(promised.measure.name());
-        let first = self.extrapolable(first, promised).filter(|value| *value != 0.0)?;
-        Some(((first - number(&value)?).abs() + number(&error)?) / first.abs())
+        Some(((of_study - number(&value)?).abs() + number(&error)?) / of_study.abs())
     }
 
     /// Why each row has no mesh error.
