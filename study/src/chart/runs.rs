@@ -56,8 +56,7 @@ impl<'a> Source<'a> {
             let has_error = |row: &&usize| self.mesh_error(measure, **row).is_some();
             self.rows.iter().filter(has_error).any(|row| reasons.cells[*row] != Value::Null)
         });
-        let other =
-            "; where the table does not cover a point, 3 times the change between its meshes";
+        let other = "; outside the table from three meshes, or pilots";
         let meaning = format!("{meaning}{}", if outside { other } else { "" });
         let entries = vec![(Sample::Error, meaning)];
         has_error.then(|| Legend { heading: "Mesh error".to_owned(), entries })

@@ -260,9 +260,10 @@ impl Study {
 
     /// Largest number of values that one of its searches can take; `None` without a search.
     pub fn most_search_values(&self) -> Option<usize> {
-        // With replicates both ends of the border move.
-        let ends = if self.replicate_count() > 1 { 2 } else { 1 };
         let search = self.grid.search.as_ref()?;
+        // With replicates, or where an uncertainty decides, both ends of the border move.
+        let one = self.replicate_count() == 1 && search.criterion == Criterion::Deployed;
+        let ends = if one { 1 } else { 2 };
         Some(search.scan().len() + ends * search.most_values_after_scan())
     }
 

@@ -108,6 +108,16 @@ fn pilots_give_an_error_outside_the_table_and_can_be_left_out() {
     let answer = folder.stdout(&one);
     assert!(answer.contains("mesh error of 6 jobs not known"), "{answer}");
     assert_eq!(folder.rows("one").len(), 6);
+    // Pilots that fail take nothing from the points, and give no error.
+    let limited = ["run", "grid.json", "--set", "job_limits.steps=4000", "--results", "limited"];
+    let output = folder.run(&limited);
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    let known = folder.points("results/grid");
+    for (point, known) in folder.points("limited").iter().zip(&known) {
+        assert_eq!(point["mass_flow_rate"], known["mass_flow_rate"]);
+        assert!(point["peak_speed"].is_f64() && point["peak_speed_error"].is_null(), "{point}");
+        assert_ne!(point["safety"], "safe", "{point}");
+    }
 }
 
 /// A search has pilots at the ends of its border, and an interval that the error widens.

@@ -96,10 +96,19 @@ pub(super) fn outcome(levels: &[Level], replicates: usize) -> SearchResult {
     }
 }
 
-/// The values to run next, in increasing order; none where the search has ended.
+/// The values to run next, in increasing order; none where the search has ended. Where one outcome alone is decided, the
+/// ends of its range move towards the values that are not: up to there something is known.
 pub(super) fn next(search: &Search, levels: &[Level], replicates: usize) -> Vec<f64> {
-    let SearchResult::Border { low, high, .. } = outcome(levels, replicates) else {
-        return Vec::new();
+    let [low, high] = match outcome(levels, replicates) {
+        SearchResult::Border { low, high, .. } => [low, high],
+        SearchResult::NoChange { .. } => {
+            let decided = levels.iter().map(|level| level.outcome(replicates).is_some());
+            let decided: Vec<bool> = decided.collect();
+            let ends = levels.windows(2).zip(decided.windows(2));
+            let ends = ends.filter(|(_, decided)| decided[0] != decided[1]).map(|(pair, _)| pair);
+            return ends.filter_map(|pair| search.middle(pair[0].value, pair[1].value)).collect();
+        }
+        _ => return Vec::new(),
     };
     let inside =
         levels.iter().map(|level| level.value).filter(|value| low < *value && *value < high);
@@ -197,6 +206,12 @@ mod tests {
         assert_eq!((outcome(&never, 1), never.len()), (SearchResult::NoChange { met: true }, 5));
         let mixed = run(&search, 5, &|_| 3);
         assert_eq!((outcome(&mixed, 5), mixed.len()), (SearchResult::Undecided, 5));
+        // All of five below 4, then no longer decided: the end of what is known is found.
+        let partly = run(&search, 5, &|value| if value < 4.0 { 5 } else { 3 });
+        assert_eq!(outcome(&partly, 5), SearchResult::NoChange { met: true });
+        let decided = partly.iter().filter(|level| level.outcome(5).is_some());
+        let end = decided.map(|level| level.value).fold(0.0, f64::max);
+        assert!(4.0 - end <= 0.1 && end < 4.0 && partly.len() < 13, "{end} {}", partly.len());
     }
 
     #[test]
