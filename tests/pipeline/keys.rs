@@ -44,6 +44,8 @@ fn keys_are_found_by_name_and_by_meaning() {
 
     let found = stdout(&["keys", "t_90_z_rim_error"]);
     assert!(found.contains("t_90_z_rim_error") && found.contains("19 of 20 runs"), "{found}");
+    assert!(stdout(&["keys", "smallest_margin"]).starts_with("smallest_margin (column"));
+    assert!(stdout(&["keys", "no_error"]).starts_with("no_error_reason (column"));
     let text = stdout(&["keys", "thickness"]);
     for part in
         ["film.thickness\n", "unit m", "default 2.54e-5", "from 1e-7 to 0.01 m", "Thickness."]

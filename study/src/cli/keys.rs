@@ -8,11 +8,11 @@ use serde_json::ser::PrettyFormatter;
 
 use super::options::OutputOptions;
 use super::{Format, output_error};
-use crate::accuracy::PROMISED;
+use crate::accuracy::{NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED};
 use crate::input::keys::listing::{FileKind, KeyDescription, REQUIRED, entries};
 use crate::input::schema;
 use crate::input::value::Value;
-use crate::job::row::COLUMNS;
+use crate::job::row::{COLUMNS, DERIVED_COLUMNS};
 use crate::platform::error::{InputError, Result};
 use crate::platform::nearest::nearest;
 use crate::platform::quote;
@@ -167,7 +167,7 @@ fn has_word(text: &str, lower: &str) -> bool {
     }
 }
 
-/// The columns of the table, also those of errors.
+/// The columns of the table, also those of errors and those that follow from limits.
 fn columns() -> Vec<KeyDescription> {
     let entry = |path: &str, unit, meaning| KeyDescription {
         path: path.to_owned(),
@@ -182,7 +182,11 @@ fn columns() -> Vec<KeyDescription> {
         let unit = promised.measure.column().unit;
         promised.columns().map(|(name, meaning)| entry(name, unit, meaning))
     });
-    of_row.chain(of_errors).collect()
+    let derived = DERIVED_COLUMNS
+        .iter()
+        .map(|column| entry(column.name, column.unit, column.meaning.to_owned()));
+    let reason = entry(NO_ERROR_REASON, "", NO_ERROR_REASON_MEANING.to_owned());
+    of_row.chain(of_errors).chain(derived).chain([reason]).collect()
 }
 
 /// The error of a word that no key and no column has, with the nearest names of both.

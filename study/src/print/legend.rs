@@ -23,7 +23,9 @@ pub fn points(
         replicates.iter().map(String::as_str).filter(|name| !is_mesh(name, meshes)).collect();
     let mut text = format!("{}, {}", count(points, "point"), count(runs, "run"));
     let on_all = if meshes.of_pilots { &[][..] } else { &meshes.list };
-    if !names.is_empty() && runs > points * on_all.len().max(1) {
+    let repeats = !names.is_empty() && runs > points * on_all.len().max(1);
+    // Pilots are runs too, whatever differs.
+    if repeats && !meshes.of_pilots {
         let _ = write!(text, " that differ in {}: {of_each}", names.join(", "));
     }
     if meshes.of_pilots {
@@ -54,21 +56,21 @@ pub const THREE_MESHES: &str = "\"solver\": {\"meshes\": [4, 6, 8]} gives one";
 /// are extrapolated from several meshes.
 pub fn mesh_errors(shown: bool, table: &Table, meshes: &Meshes) -> Vec<String> {
     let mut notes = Vec::new();
-    if shown {
+    let reasons = || table.column(NO_ERROR_REASON).into_iter().flat_map(|one| one.cells.iter());
+    if shown && reasons().any(|reason| *reason == Value::Null) {
         let finest = MeshErrors::shipped().reference;
         notes.push(format!(
-            "±: mesh error, which 19 of 20 runs of the table of mesh errors keep: to the value on n {finest}"
+            "±: mesh error, which 19 of 20 runs of the table of mesh errors keep: to the value at {finest} subdivisions; what is assumed is beside it (<measure>_assumed), and limits count both"
         ));
     }
-    let reasons = table.column(NO_ERROR_REASON).into_iter().flat_map(|column| column.cells.iter());
-    let texts = reasons.filter_map(|cell| match cell {
+    let texts = reasons().filter_map(|cell| match cell {
         Value::Text(text) => Some(text.as_str()),
         _ => None,
     });
     let (known, gaps): (Vec<&str>, Vec<&str>) = texts.partition(|text| !is_unknown(text));
     if shown && known.into_iter().any(is_of_pilots) {
         notes.push(
-            "where the table does not reach: the largest error of the pilots (no_error_reason)"
+            "±, where the table does not reach: the largest error of the pilots (no_error_reason)"
                 .to_owned(),
         );
     }

@@ -121,7 +121,7 @@ impl Answer {
         // A large study needs the memory.
         drop(jobs);
         let limits = study.result_limits();
-        let of_jobs = table.one_row_per_job(&rows);
+        let of_jobs = standing(table, &table.one_row_per_job(&rows), &replicates);
         let worst = bounds(limits).filter_map(|(measure, above)| {
             let worse: fn(f64, f64) -> bool = if above { |a, b| a < b } else { |a, b| a > b };
             most(table, &of_jobs, &replicates, measure, worse)
@@ -159,15 +159,28 @@ impl Answer {
             let deployed = table.verdict(*row) == Some(Verdict::Deployed);
             table.is_trusted(*row) && (deployed || !judged)
         };
-        let best: Vec<usize> = rows.iter().copied().filter(can_be_best).collect();
+        let standing = standing(table, &rows, replicates);
+        let best: Vec<usize> = standing.iter().copied().filter(can_be_best).collect();
         let least = |measure| extreme(table, &best, replicates, measure, |a, b| a < b);
-        let most = |measure| most(table, &rows, replicates, measure, |a, b| a > b);
+        let most = |measure| most(table, &standing, replicates, measure, |a, b| a > b);
         answer.fastest = least(HEADLINE[0]);
         answer.hardest = most(ColumnId::PeakVz);
         answer.most_energy = most(ColumnId::PeakKineticEnergy);
         answer.trust = trust::trust(table, &rows);
         answer
     }
+}
+
+/// Of these rows those that stand for their points: where values are extrapolated, not the runs on other meshes.
+fn standing(table: &Table, rows: &[usize], replicates: &[String]) -> Vec<usize> {
+    if !table.has_extrapolated() {
+        return rows.to_vec();
+    }
+    let points = Condensed::of(table, rows, replicates);
+    let mut standing: Vec<usize> =
+        points.runs.iter().flat_map(|runs| runs.finest.iter().copied()).collect();
+    standing.sort_unstable();
+    standing
 }
 
 /// The measures with a limit that is a number, and whether they must be above it.

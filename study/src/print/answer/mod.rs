@@ -107,6 +107,10 @@ pub fn print_next(answer: &Answer, root: &Path, out: &mut dyn Write) -> io::Resu
     if answer.searches.is_some() {
         writeln!(out, "           billow table {root} --borders")?;
     }
+    if answer.safety.as_ref().is_some_and(|safety| safety.counts.uncertain > 0) {
+        // It names methods with smaller errors.
+        writeln!(out, "           billow plan {root}/study.json --accuracy \"15 %\"")?;
+    }
     // Compare a named choice (a strategy) first, then a quantity with a unit.
     let ranked = answer.comparisons.iter().filter_map(|(_, ranking)| ranking.as_ref().ok());
     let ranked: Vec<&Ranking> = ranked.collect();
@@ -249,7 +253,7 @@ fn audit(trust: &Trust) -> String {
     let of_pilots =
         trust.pilots.as_ref().map_or_else(String::new, |text| format!("; mesh error: {text}"));
     format!(
-        "{} done; ledger residual at most {} (energy_drift above {MAX_LEDGER_RESIDUAL}); \
+        "{} done; ledger residual at most {} (allowed: {MAX_LEDGER_RESIDUAL}); \
          {film}{damped}{not_trusted}{without_error}{of_pilots}",
         count(trust.jobs, "job"),
         brief_number(trust.ledger_residual)

@@ -91,8 +91,11 @@ pub(super) fn safe(safety: &Safety) -> String {
         let _ = write!(all, "; missed most often: {}", missed.join(", "));
     }
     if let Some(nearest) = &safety.nearest {
-        let what =
-            if nearest.run.value < 0.0 { "least beyond a limit" } else { "nearest to a limit" };
+        let what = if nearest.run.value < 0.0 {
+            "least beyond a limit"
+        } else {
+            "safe and nearest to a limit"
+        };
         let (limit, job) = (at_limit(&nearest.limit, nearest.seeds), job_text(&nearest.run));
         let _ = write!(all, "; {what}: {limit}, at {job}");
     }
