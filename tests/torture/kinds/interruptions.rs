@@ -78,12 +78,13 @@ pub fn signals(place: &Place) -> Result<Prepared, String> {
             trial.detected = true;
             trial.check("run", &finish, &[128 + code]);
         }
-        if let Some(truth) = truth {
-            return truth.finish(trial, place);
-        }
+        // An orderly stop leaves nothing to repair.
         let doctor = trial.run(place, "doctor results/s", &[]);
         if doctor.code == Some(1) && !doctor.stdout.contains("no results here") {
             trial.fault(format!("doctor: {}", doctor.stdout));
+        }
+        if let Some(truth) = truth {
+            truth.finish(trial, place);
         }
     }))
 }

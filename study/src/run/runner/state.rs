@@ -248,7 +248,8 @@ impl<'a, 'w> State<'a, 'w> {
     /// Writes the table when it is outdated.
     pub(super) fn write_table(&mut self) -> Result<()> {
         let start = Instant::now();
-        if self.table_outdated {
+        // A run that was stopped before its plan leaves the table as it is.
+        if self.table_outdated && !self.points.is_empty() {
             self.log.check_folder()?;
             let table = (self.run.table)(&self.points, &self.records);
             self.run.results.write_table(table)?;

@@ -128,6 +128,26 @@ fn a_second_run_computes_nothing_and_changes_no_file() {
 }
 
 #[test]
+fn a_run_that_is_stopped_before_its_plan_leaves_the_table_as_it_is() {
+    let folder = folder();
+    let planner = generation_zero(5);
+    let executor = Scripted::new(ran);
+    let stopped = |root: &Path| {
+        let study = fixture::run(Results::new(&Disk, root), &planner, &executor);
+        study.stop.request(15);
+        run(&study, &mut Silent).unwrap();
+    };
+    let table = |root: &Path| fs::read(root.join("summary.parquet")).ok();
+    let (new, old) = (folder.path().join("new"), folder.path().join("old"));
+    stopped(&new);
+    assert_eq!(table(&new), None);
+    run_quiet(&old, 5, 1, &executor);
+    let before = table(&old);
+    stopped(&old);
+    assert!(before.is_some() && table(&old) == before);
+}
+
+#[test]
 fn a_larger_study_runs_only_its_new_jobs_and_a_smaller_one_runs_nothing() {
     let folder = folder();
     run_quiet(folder.path(), 4, 1, &Scripted::new(ran));
