@@ -14,13 +14,17 @@ pub struct AssumedRanges(pub [[f64; 2]; ASSUMED_KEYS.len()]);
 impl Default for AssumedRanges {
     /// The ranges of the table of mesh errors.
     fn default() -> Self {
-        Self(ASSUMED_KEYS.map(of_table))
+        Self(core::array::from_fn(of_table))
     }
 }
 
-/// The value that the runs of the table have: the default of the key.
-pub fn assumed_value(key: &str) -> f64 {
-    match KEYS[position(KEYS, key)].default_value() {
+/// Their positions among the keys: a row asks many times.
+const POSITIONS: [usize; ASSUMED_KEYS.len()] =
+    [position(KEYS, ASSUMED_KEYS[0]), position(KEYS, ASSUMED_KEYS[1])];
+
+/// The value of one of [`ASSUMED_KEYS`] that the runs of the table have: the default of the key.
+pub fn assumed_value(index: usize) -> f64 {
+    match KEYS[POSITIONS[index]].default_value() {
         Value::Number(number) => number,
         _ => f64::NAN,
     }
@@ -33,10 +37,11 @@ fn key_and_value(name: &str) -> Option<(&str, f64)> {
 }
 
 /// Smallest and largest value of a key for which the table has a change.
-fn of_table(key: &str) -> [f64; 2] {
+fn of_table(index: usize) -> [f64; 2] {
+    let key = ASSUMED_KEYS[index];
     let values = MeshErrors::shipped().assumed.values().flat_map(|changes| changes.keys());
     let values = values.filter_map(|name| key_and_value(name).filter(|(of, _)| *of == key));
-    let base = assumed_value(key);
+    let base = assumed_value(index);
     values.fold([base; 2], |[low, high], (_, value)| [low.min(value), high.max(value)])
 }
 
@@ -44,8 +49,8 @@ impl AssumedRanges {
     /// The part of a change in the table that its range keeps, 0 to 1; with the key. Changes are even in ln of the value.
     pub fn part<'n>(&self, name: &'n str) -> Option<(&'n str, f64)> {
         let (key, value) = key_and_value(name)?;
-        let [low, high] = self.0[ASSUMED_KEYS.iter().position(|known| *known == key)?];
-        let base = assumed_value(key);
+        let index = ASSUMED_KEYS.iter().position(|known| *known == key)?;
+        let ([low, high], base) = (self.0[index], assumed_value(index));
         let end = if value < base { low } else { high };
         Some((key, libm::log(end / base) / libm::log(value / base)))
     }

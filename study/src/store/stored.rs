@@ -141,17 +141,18 @@ impl<'a> Stored<'a> {
     /// What the searches of the study have found so far.
     pub fn borders(&self) -> Vec<Border> {
         let finished = self.finished();
+        if !self.study.meshes().of_pilots {
+            return plan::borders(&self.study, &finished, &finished);
+        }
+        // Only the whole table knows the errors of the pilots.
+        let table = self.table();
+        let jobs = table.one_row_per_job(&(0..table.rows()).collect::<Vec<_>>());
+        // Both stand in the order of the plan.
+        let ended = jobs.iter().filter(|row| table.status(**row) != Some(Status::Pending));
         let mut judged = finished.clone();
-        if self.study.meshes().of_pilots {
-            // Only the whole table knows the errors of the pilots.
-            let table = self.table();
-            let jobs = table.one_row_per_job(&(0..table.rows()).collect::<Vec<_>>());
-            // Both stand in the order of the plan.
-            let ended = jobs.iter().filter(|row| table.status(**row) != Some(Status::Pending));
-            for (row, position) in judged.iter_mut().zip(ended) {
-                let limits = self.study.result_limits().iter();
-                row.limits = limits.map(|limit| table.judge(limit, *position)).collect();
-            }
+        for (row, position) in judged.iter_mut().zip(ended) {
+            let limits = self.study.result_limits().iter();
+            row.limits = limits.map(|limit| table.judge(limit, *position)).collect();
         }
         plan::borders(&self.study, &finished, &judged)
     }

@@ -30,7 +30,7 @@ pub(super) fn read(json: Option<&Json>, source: &Source) -> Result<AssumedRanges
         }
         given.push(position);
         let key = &KEYS[index];
-        let ([least, most], base) = (known.0[position], assumed_value(key.path));
+        let ([least, most], base) = (known.0[position], assumed_value(position));
         let allowed = format!(
             "[low, high], from {} to {} {}, about the default {}",
             short_number(least),

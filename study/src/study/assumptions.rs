@@ -4,7 +4,7 @@ use billow_solver::geometry::fold::FoldDesign;
 use billow_solver::scene::{HeatTransfer, Scene};
 
 use super::ground::{pressure_at_release, stowed_volume};
-use crate::accuracy::{ASSUMED_KEYS, AssumedRanges, assumed_value};
+use crate::accuracy::{AssumedRanges, assumed_value};
 use crate::input::keys;
 use crate::input::value::{brief_number, range_text, short_number};
 use crate::job::point::Point;
@@ -59,10 +59,10 @@ pub fn assumptions(points: &[Point], ranges: &AssumedRanges) -> Vec<String> {
     texts
 }
 
-/// The range of one of [`ASSUMED_KEYS`], where every scene has the value that is assumed.
+/// The range of one of [`crate::accuracy::ASSUMED_KEYS`], where every scene has the value that is assumed.
 fn ranges_text(value: &str, ranges: &AssumedRanges, index: usize) -> String {
     let [low, high] = ranges.0[index].map(short_number);
-    let assumed = value == short_number(assumed_value(ASSUMED_KEYS[index]));
+    let assumed = value == short_number(assumed_value(index));
     if assumed { format!(" (assumed: {low} to {high})") } else { String::new() }
 }
 

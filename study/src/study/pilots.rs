@@ -12,6 +12,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use billow_solver::scene::{ModelKind, Scene};
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
 use super::column::Column;
 use super::finished::FinishedRow;
@@ -43,7 +44,10 @@ pub(super) fn meshes(
     if !limits.iter().any(needs_error) || grid.columns.iter().any(|c| c.index == SUBDIVISIONS) {
         return None;
     }
-    points.iter().find(|point| is_outside(point))?;
+    // Where all are inside, a large study looks at each.
+    if !points.par_iter().any(is_outside) {
+        return None;
+    }
     let table = MeshErrors::shipped();
     let Value::Integer(n) = settings.at(SUBDIVISIONS) else { return None };
     let known = table.meshes();
@@ -59,11 +63,9 @@ fn needs_error(limit: &ResultLimit) -> bool {
 
 /// Whether a point is of film, and outside the table of mesh errors.
 fn is_outside(point: &Point) -> bool {
-    let is_outside = |(scene, values): (&Scene, Features)| {
-        let is_film = scene.solver.model == ModelKind::Film;
-        is_film && MeshErrors::shipped().gap(scene, &values).is_some()
-    };
-    features(point).is_some_and(is_outside)
+    let has_gap =
+        |(scene, values): (&Scene, Features)| MeshErrors::shipped().gap(scene, &values).is_some();
+    point.job.scene.solver.model == ModelKind::Film && features(point).is_some_and(has_gap)
 }
 
 /// Adds the mesh to the parameters of a study with pilots: it distinguishes the rows of several meshes.

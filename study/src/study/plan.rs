@@ -60,8 +60,8 @@ impl PlanCounts {
 ///
 /// A generation is planned whole while any of its jobs has no finished row; the runner leaves out the
 /// finished ones. A grid has one generation, a search one more each time its jobs have ended. Infeasible
-/// points have no job to finish. The pilots of a study are its last generation. Without any finished row the first generation is always given, so that a
-/// study of infeasible points gets its rows.
+/// points have no job to finish. The pilots of a study are its last generation. Without any finished row the first
+/// generation is always given, so that a study of infeasible points gets its rows.
 pub fn next_jobs(study: &Study, finished: &[FinishedRow]) -> Option<Generation> {
     let ids: BTreeSet<&JobId> = finished.iter().map(|row| &row.id).collect();
     let is_open = |points: &[Point]| {
