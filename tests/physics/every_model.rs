@@ -1,6 +1,7 @@
 //! What every model of the paper's capsule does.
 
 use billow_solver::models;
+use billow_solver::models::piston::MovingMass;
 use billow_solver::scene::paper;
 
 use crate::film_capsule;
@@ -46,6 +47,31 @@ fn a_packed_capsule_stays_and_presses_on_its_lid() {
         assert_eq!(deployment.measures.peak_lid_force, Some(largest), "{model:?}");
         assert!(z[30] > 0.09, "{model:?}: {}", z[30]);
         assert!(deployment.audit.ledger_residual < 5e-3, "{model:?}");
+    }
+}
+
+/// Pressure on closed film has no resultant: while nothing moves, what holds the film carries its weight alone, and then
+/// also what lifts it.
+#[test]
+fn what_holds_the_film_carries_its_weight_and_what_lifts_it() {
+    for model in ModelKind::ALL {
+        let mut scene = scene(model, 0.03);
+        scene.release_time = 0.01;
+        scene.gravity = -9.806_65;
+        let pattern = FoldPattern::new(&scene.design).unwrap();
+        let mass = MovingMass::new(&pattern, scene.film.area_density()).total;
+        // Layers in contact move under the lid.
+        let film = model == ModelKind::Film;
+        let deployment = if film { film_capsule::run(&scene, DEFAULT_CFL) } else { run(&scene) };
+        assert_eq!(deployment.stop, Stop::Done, "{model:?}");
+        let impulse = deployment.history.column("support_impulse");
+        let weight = mass * 9.806_65;
+        assert!((impulse[10] / (0.01 * weight) - 1.0).abs() < 0.02, "{model:?}: {impulse:?}");
+        let vz = deployment.history.column("vz")[30];
+        let momentum = impulse[30] - 0.03 * weight;
+        assert!(momentum > 0.3 * mass * vz && momentum < mass * vz, "{model:?}: {momentum} {vz}");
+        let largest = deployment.measures.peak_base_force.unwrap();
+        assert!(largest > (impulse[30] - impulse[25]) / 5e-3 - 1e-9, "{model:?}: {largest}");
     }
 }
 

@@ -17,7 +17,8 @@ pub fn fixed(step: f64) -> Control {
 /// A piston on V = A z + V0 without an end.
 pub fn tube(area: f64, offset: f64, mass: f64, gas: Gas) -> Piston {
     let volume = VolumeLaw::Uniform { area, offset };
-    Piston { volume, mass, weight: 0.0, end: EndFilm::none(), gas }
+    let (first_moment, weight, film_weight) = (mass, 0.0, 0.0);
+    Piston { volume, mass, weight, first_moment, film_weight, end: EndFilm::none(), gas }
 }
 
 /// The paper's capsule without gas at n 5, for half a second.

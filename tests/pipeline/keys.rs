@@ -42,8 +42,8 @@ fn keys_are_found_by_name_and_by_meaning() {
     assert_eq!(listed(&["keys", "peak_vz", "--json"]), ["peak_vz"]);
     assert!(stdout(&["keys", "peak_vz"]).starts_with("peak_vz (column of the table)\n"));
 
-    let found = stdout(&["keys", "t_90_z_rim_error"]);
-    assert!(found.contains("t_90_z_rim_error") && found.contains("19 of 20 runs"), "{found}");
+    let found = stdout(&["keys", "t_90_z_rim_error_below"]);
+    assert!(found.contains("t_90_z_rim_error_below") && found.contains("19 of 20 runs"), "{found}");
     assert!(stdout(&["keys", "smallest_margin"]).starts_with("smallest_margin (column"));
     assert!(stdout(&["keys", "no_error"]).starts_with("no_error_reason (column"));
     let text = stdout(&["keys", "thickness"]);

@@ -33,11 +33,13 @@ HISTORY_UNITS = {
     "z_rim": "m",
     "z_max": "m",
     "vz": "m/s",
+    "film_speed": "m/s",
     "volume": "m3",
     "pressure": "Pa",
     "temperature": "K",
     "gas_mass": "kg",
     "lid_force": "N",
+    "support_impulse": "N s",
     "kinetic_energy": "J",
     "strain_energy": "J",
     "contact_energy": "J",
@@ -63,7 +65,7 @@ FILM_UNITS = {
     "pleat_conductance": "m3/s",
 }
 UNITS = {"", "1", "s", "m", "m/s", "m2", "m3", "Pa", "K", "kg", "kg/s", "N", "N/m", "J", "Hz", "rad", "ns",
-         "kg/m3", "m3/s", "m/s2", "J/(kg K)", "W/(m2 K)"}
+         "kg/m3", "m3/s", "m/s2", "N s", "J/(kg K)", "W/(m2 K)"}
 TABLE_UNITS = {
     "job": "",
     "status": "",

@@ -1,7 +1,7 @@
 //! Checkpoints: the complete state of a film run as text, exact to the bit.
 //!
 //! ```text
-//! {"checksum": "…", "format": "billow-checkpoint", "version": 6, "physics_version": …, "scene": "…",
+//! {"checksum": "…", "format": "billow-checkpoint", "version": 7, "physics_version": …, "scene": "…",
 //!  "state": …, "run": …}
 //! ```
 //!
@@ -20,7 +20,7 @@ use crate::platform::seal;
 /// Name of the format.
 pub const FORMAT: &str = "billow-checkpoint";
 /// Version of the format this program writes and reads.
-pub const VERSION: u32 = 6;
+pub const VERSION: u32 = 7;
 
 /// A run of film between two steps.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

@@ -18,6 +18,8 @@ pub struct Sample {
     pub z_max: f64,
     /// Mean velocity of the top ring along z, m/s.
     pub vz: f64,
+    /// Largest speed of any node of the film, mean over the last 5 ms, m/s; 0 before that time.
+    pub film_speed: f64,
     /// Enclosed volume, m³.
     pub volume: f64,
     /// Gas pressure, Pa.
@@ -26,6 +28,8 @@ pub struct Sample {
     pub temperature: f64,
     /// Force of the film on the packing lid, N; 0 after release.
     pub lid_force: f64,
+    /// Impulse along z on the film of all that holds it (supports, lid, floor) since time 0, N s.
+    pub support_impulse: f64,
     /// Energy ledger of the film.
     pub ledger: Ledger,
     /// Mass and energy balance of the gas.
@@ -47,7 +51,7 @@ pub struct History {
 }
 
 /// Columns that only a capsule has: film without rings leaves them out.
-pub const RING_COLUMNS: [&str; 3] = ["z_centre", "z_rim", "vz"];
+pub const RING_COLUMNS: [&str; 4] = ["z_centre", "z_rim", "vz", "support_impulse"];
 
 /// A further time series beside [`COLUMNS`], at the same times: for example the position of a node or the
 /// membrane force of an element.
@@ -91,11 +95,14 @@ columns! {
     "z_rim" ["m"] "mean height of the top ring", |s| s.z_rim;
     "z_max" ["m"] "largest height of any node", |s| s.z_max;
     "vz" ["m/s"] "mean velocity of the top ring along z", |s| s.vz;
+    "film_speed" ["m/s"] "largest speed of any node of the film: mean over the last 5 ms", |s| s.film_speed;
     "volume" ["m3"] "enclosed volume", |s| s.volume;
     "pressure" ["Pa"] "gas pressure", |s| s.pressure;
     "temperature" ["K"] "gas temperature (film temperature while there is no gas)", |s| s.temperature;
     "gas_mass" ["kg"] "gas inside", |s| s.gas.mass;
     "lid_force" ["N"] "force of the film on the packing lid", |s| s.lid_force;
+    "support_impulse" ["N s"] "impulse along z on the film of all that holds it (supports, lid, floor) since time 0",
+        |s| s.support_impulse;
     "kinetic_energy" ["J"] "kinetic energy of the film", |s| s.ledger.kinetic;
     "strain_energy" ["J"] "energy stored in the film: elastic, and of creep", |s| s.ledger.strain;
     "contact_energy" ["J"] "elastic energy of contact: minus the work of contact forces since time 0",

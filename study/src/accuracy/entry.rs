@@ -1,10 +1,12 @@
 //! One entry of the table of mesh errors: the error of one measure by one method, for a kind of scene.
 //!
 //! ```text
-//! b(x) = b_base + Σ_f s_f u_f(x)       u_f: coordinate of the feature f, [`super::coordinates`]
-//! error = |b(x)| + w      w: the distance from b(x) that 19 of 20 runs keep, of scenes that were left out
-//! over the value itself:  the larger of |b ± w|/(1 + b ± w)      (the value is 1 + b ± w of that on the finest mesh)
+//! b(x) = b_base + Σ_f s_f u_f(x)       b = ln(m/m_f);  u_f: coordinate of the feature f, [`super::coordinates`]
+//! m e^−(b ± w)                         where the value m_f on the finest mesh is
+//! w: the distance from b(x) that 19 of 20 runs keep, of scenes that were left out
+//! over the value itself:  below it at most 1 − e^−(b + w), above it at most e^(w − b) − 1, and never less than 0
 //! ```
+//! It is an interval about the corrected value, and the value is in it.
 
 use billow_solver::scene::{ModelKind, Scene};
 use serde::{Deserialize, Serialize};
@@ -17,8 +19,8 @@ use crate::input::keys;
 pub struct RelativeError {
     /// Over the value on the finest mesh.
     pub of_reference: f64,
-    /// Over the value of the run. Of a value that is too small it is the larger one.
-    pub of_itself: f64,
+    /// Over the value of the run: how far the value on the finest mesh may be below it, and above it.
+    pub of_itself: [f64; 2],
 }
 
 /// The error of one measure, for one model and mesh; or its change with an assumed value, on the one mesh.
@@ -32,7 +34,7 @@ pub struct Entry {
     /// Weight w of an extrapolated value, m₂ + w (m₂ − m₁) of a coarse mesh 1 and a fine mesh 2; 0 for one mesh.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub weight: f64,
-    /// Bias of the base scene: value over that on the finest mesh, minus 1.
+    /// Bias of the base scene: logarithm of the value over that on the finest mesh.
     pub bias: f64,
     /// Change of the bias with the coordinate of each feature.
     pub slopes: [f64; FEATURES],
@@ -58,10 +60,13 @@ impl Entry {
     /// The error of 19 of 20 runs of a scene with these coordinates.
     pub fn error(&self, u: &[f64; FEATURES]) -> RelativeError {
         let (bias, width) = (self.bias(u), self.width);
-        let end = |side: f64| (bias + side * width).abs() / (1.0 + bias + side * width);
-        // Below the value 0 nothing is known of a ratio.
-        let of_itself = if bias - width > -1.0 { end(-1.0).max(end(1.0)) } else { f64::INFINITY };
-        RelativeError { of_reference: bias.abs() + width, of_itself }
+        let below = 1.0 - libm::exp(-bias - width);
+        let above = libm::exp(width - bias) - 1.0;
+        let of_reference = libm::exp(bias + width) - 1.0;
+        RelativeError {
+            of_reference: of_reference.max(1.0 - libm::exp(bias - width)),
+            of_itself: [below.max(0.0), above.max(0.0)],
+        }
     }
 }
 

@@ -21,7 +21,7 @@ pub use coordinates::Coordinates;
 pub use entry::{Entry, Method, RelativeError};
 pub use features::{Coverage, Features};
 pub use promised::{
-    NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED, Promised, error_column, is_error_column,
+    NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED, Promised, error_columns, is_error_column,
 };
 pub use row::{RowErrors, is_of_pilots, is_unknown, of_pilots};
 pub use table::MeshErrors;

@@ -8,8 +8,8 @@ use crate::job::row::ColumnId;
 pub struct Promised {
     /// The measure.
     pub measure: ColumnId,
-    /// Name of the column of its mesh error.
-    pub error_column: &'static str,
+    /// Names of the columns of its mesh error, below and above the value.
+    pub error_columns: [&'static str; 2],
     /// Name of the column of its change over the ranges of the assumed values.
     pub assumed_column: &'static str,
     /// Whether an accuracy that is asked for holds for it: the others scatter by more from seed to seed.
@@ -21,7 +21,7 @@ macro_rules! promised {
     ($id:ident, $name:literal, $is_asked:literal) => {
         Promised {
             measure: ColumnId::$id,
-            error_column: concat!($name, "_error"),
+            error_columns: [concat!($name, "_error_below"), concat!($name, "_error_above")],
             assumed_column: concat!($name, "_assumed"),
             is_asked: $is_asked,
         }
@@ -59,16 +59,19 @@ impl Promised {
     }
 
     /// Names and meanings of the columns of its mesh error and of its change with the assumed values.
-    pub fn columns(&self) -> [(&'static str, String); 2] {
+    pub fn columns(&self) -> [(&'static str, String); 3] {
         let measure = self.measure.name();
-        let finest = MeshErrors::shipped().reference;
-        let error = format!(
-            "mesh error of {measure}: 19 of 20 runs are nearer to the value on n {finest}; null where it is not known (no_error_reason)"
-        );
+        let finest = MeshErrors::shipped().finest;
+        let error = |side: &str| {
+            format!(
+                "mesh error of {measure}: how far {side} it the value on n {finest} may be, kept by 19 of 20 runs; null where it is not known (no_error_reason)"
+            )
+        };
         let assumed = format!(
             "change of {measure} over the ranges of what is assumed (key assumed): film.loss_factor and gas.heat_transfer; null where it is not known"
         );
-        [(self.error_column, error), (self.assumed_column, assumed)]
+        let [below, above] = self.error_columns;
+        [(below, error("below")), (above, error("above")), (self.assumed_column, assumed)]
     }
 }
 
@@ -82,12 +85,15 @@ pub fn promise(measure: &str) -> Option<&'static Promised> {
     PROMISED.iter().find(|promised| promised.measure == measure)
 }
 
-/// Name of the column with the mesh error of a measure.
-pub fn error_column(measure: &str) -> Option<&'static str> {
-    promise(measure).map(|promised| promised.error_column)
+/// Names of the columns with the mesh error of a measure, below and above its value.
+pub fn error_columns(measure: &str) -> Option<[&'static str; 2]> {
+    promise(measure).map(|promised| promised.error_columns)
 }
 
 /// Whether a column holds mesh errors, or changes with the assumed values.
 pub fn is_error_column(name: &str) -> bool {
-    PROMISED.iter().any(|promised| [promised.error_column, promised.assumed_column].contains(&name))
+    let is = |promised: &Promised| {
+        promised.error_columns.contains(&name) || promised.assumed_column == name
+    };
+    PROMISED.iter().any(is)
 }

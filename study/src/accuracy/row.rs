@@ -11,8 +11,8 @@ use crate::job::row::{CellType, Cells, ColumnGroup, ColumnId};
 
 /// The errors of one row, in the order of [`PROMISED`], and why some are not known.
 pub struct RowErrors {
-    /// Mesh errors, in the unit of the measure.
-    pub errors: [Option<f64>; PROMISED.len()],
+    /// Mesh errors, in the unit of the measure: how far below and above it the value on the finest mesh may be.
+    pub errors: [Option<[f64; 2]>; PROMISED.len()],
     /// Changes over the ranges of the assumed values.
     pub assumed: [Option<f64>; PROMISED.len()],
     /// Why some mesh errors are not known.
@@ -67,7 +67,8 @@ impl RowErrors {
                 return None;
             }
             match table.error(&method, &features, &promised) {
-                Ok(error) => Some(error.of_itself * value.abs()).filter(|error| error.is_finite()),
+                Ok(error) => Some(error.of_itself.map(|side| side * value.abs()))
+                    .filter(|sides| sides.iter().all(|side| side.is_finite())),
                 Err(gap) => {
                     reason = Some(gap);
                     None
@@ -78,17 +79,17 @@ impl RowErrors {
     }
 
     /// Uncertainty of a value of this row.
-    pub fn uncertainty(&self, measure: ColumnId, cells: &Cells) -> Option<f64> {
+    pub fn uncertainty(&self, measure: ColumnId, cells: &Cells) -> Option<[f64; 2]> {
         let near = *cells.get(ColumnId::NearThreshold) == Value::Bool(true);
-        let parts = |index: usize| [self.errors[index], self.assumed[index]];
+        let parts = |index: usize| (self.errors[index], self.assumed[index]);
         uncertainty(measure, near, self.reason.as_deref(), parts)
     }
 }
 
-/// Uncertainty of a value of a row, SI: `None` where it is not known.
+/// Uncertainty of a value of a row, SI, below and above it: `None` where it is not known.
 ///
 /// ```text
-/// u² = e² + a²      e: mesh error;  a: change over the ranges of the assumed values
+/// u² = e² + a²      e: mesh error on that side;  a: change over the ranges of the assumed values
 /// ```
 /// A verdict has none, or an infinite one near a threshold; what depends on no mesh has none. `parts` are e and a of a
 /// promised measure, by its position; `reason` says why a row has no mesh errors.
@@ -96,19 +97,19 @@ pub fn uncertainty(
     measure: ColumnId,
     near_threshold: bool,
     reason: Option<&str>,
-    parts: impl Fn(usize) -> [Option<f64>; 2],
-) -> Option<f64> {
+    parts: impl Fn(usize) -> (Option<[f64; 2]>, Option<f64>),
+) -> Option<[f64; 2]> {
     if measure == ColumnId::Verdict {
         let known =
             reason.is_none_or(|reason| !is_unknown(reason) && !reason.contains(VERDICTS_DIFFER));
-        return known.then_some(if near_threshold { f64::INFINITY } else { 0.0 });
+        return known.then_some([if near_threshold { f64::INFINITY } else { 0.0 }; 2]);
     }
     if depends_on_no_mesh(measure) {
-        return Some(0.0);
+        return Some([0.0; 2]);
     }
     let promised = promise(measure.name())?;
-    let [error, assumed] = parts(PROMISED.iter().position(|one| one == promised)?);
-    Some(libm::hypot(error?, assumed.unwrap_or(0.0)))
+    let (error, assumed) = parts(PROMISED.iter().position(|one| one == promised)?);
+    Some(error?.map(|side| libm::hypot(side, assumed.unwrap_or(0.0))))
 }
 
 /// Whether a column is no measure of the motion: a count, a word, a number of the audit.
@@ -182,7 +183,9 @@ mod tests {
     #[test]
     fn rows_of_film_have_errors_and_rows_of_another_model_say_where_theirs_are() {
         let film = of_row(ModelKind::Film, Stepping::Stable(0.45));
-        assert!(film.errors[1].is_some_and(|error| error > 0.0 && error < 0.2));
+        assert!(
+            film.errors[1].is_some_and(|sides| sides.iter().all(|side| (0.0..0.2).contains(side)))
+        );
         assert_eq!(film.reason, None);
         let said = |model: &str| {
             format!(

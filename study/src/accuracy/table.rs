@@ -2,7 +2,8 @@
 //! scene. `billow-checks converge --table` writes it from stored results; the program contains it.
 //!
 //! ```text
-//! b = m/m_ref − 1                              bias of a mesh: median over seeds, m_ref on the finest mesh
+//! b = F ln(m/m_ref)                            bias of a mesh: median over seeds, m_ref on the reference mesh
+//! F = (1/n − 1/n_f)/(1/n − 1/n_ref)            to the finest mesh n_f: errors go as 1/n
 //! e(n) = e₁ + (e₂ − e₁) ln(n/n₁)/ln(n₂/n₁)     error between two meshes of the table
 //! ```
 
@@ -21,7 +22,7 @@ use super::promised::Promised;
 /// Name of the format.
 pub const FORMAT: &str = "billow-mesh-errors";
 /// Version of the format that this program writes and reads.
-pub const VERSION: u64 = 3;
+pub const VERSION: u64 = 4;
 
 /// The table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -35,8 +36,10 @@ pub struct MeshErrors {
     pub physics_version: u32,
     /// Studies whose results it was made from.
     pub studies: Vec<String>,
-    /// Subdivisions of the finest mesh.
+    /// Subdivisions of the mesh of the runs with which the others are compared.
     pub reference: u32,
+    /// Subdivisions of the mesh against which the errors are, by their first order.
+    pub finest: u32,
     /// The scenes that it covers.
     pub coverage: Coverage,
     /// The coordinates of the biases.
@@ -108,7 +111,7 @@ impl MeshErrors {
             let between = |coarse: f64, fine: f64| coarse + part * (fine - coarse);
             return Ok(RelativeError {
                 of_reference: between(coarse.of_reference, fine.of_reference),
-                of_itself: between(coarse.of_itself, fine.of_itself),
+                of_itself: [0, 1].map(|side| between(coarse.of_itself[side], fine.of_itself[side])),
             });
         }
         match (known.first(), below) {

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use billow_solver::scene::paper::{capsule, window};
 use billow_solver::scene::{ModelKind, Scene, Stepping};
 
+use super::entry::RelativeError;
 use super::features::FEATURES;
 use super::promised::promise;
 use super::*;
@@ -159,7 +160,7 @@ fn table() -> MeshErrors {
         model: ModelKind::Film,
         meshes: vec![n],
         weight: 0.0,
-        bias: -error,
+        bias: libm::log(1.0 - error),
         slopes,
         width: 0.0,
         runs: 1,
@@ -171,6 +172,7 @@ fn table() -> MeshErrors {
         physics_version: 0,
         studies: Vec::new(),
         reference: 24,
+        finest: 24,
         coverage: Coverage::of([(&base, features(&base))]).unwrap(),
         coordinates: Coordinates { base: features(&base).values, half: [0.0; FEATURES] },
         errors: [("t_90_z_rim".to_owned(), vec![entry(16, 0.02), entry(4, 0.08)])].into(),
@@ -202,16 +204,27 @@ fn a_feature_changes_the_bias_and_deviations_make_the_error_wider() {
     let method = Method { model: ModelKind::Film, meshes: vec![4] };
     let mut two_storeys = scene();
     two_storeys.design.storeys = 2;
-    let error = table.error(&method, &features(&two_storeys), promised).unwrap();
-    assert!((error.of_reference - 0.12).abs() < 1e-12, "{error:?}");
-    // The value is 12 % too small: it lacks 12/88 of itself.
-    assert!((error.of_itself - 0.12 / 0.88).abs() < 1e-12, "{error:?}");
+    let of = |table: &MeshErrors, scene: &Scene| {
+        table.error(&method, &features(scene), promised).unwrap()
+    };
+    let near = |found: [f64; 3], expected: [f64; 3]| {
+        let close = |k: usize| (found[k] - expected[k]).abs() < 1e-12;
+        assert!((0..3).all(close), "{found:?} {expected:?}");
+    };
+    let all = |error: RelativeError| [error.of_reference, error.of_itself[0], error.of_itself[1]];
+    // The value is 0.92 e^−0.04 of that on the finest mesh, which is above it.
+    let value = 0.92 * libm::exp(-0.04);
+    near(all(of(&table, &two_storeys)), [1.0 - value, 0.0, 1.0 / value - 1.0]);
+    let wide = libm::exp(0.05);
     for entry in table.errors.values_mut().flatten() {
         entry.width = 0.05;
     }
-    let error = table.error(&method, &features(&two_storeys), promised).unwrap();
-    assert!((error.of_reference - 0.17).abs() < 1e-12, "{error:?}");
-    assert!((error.of_itself - 0.17 / 0.83).abs() < 1e-12, "{error:?}");
+    near(all(of(&table, &two_storeys)), [1.0 - value / wide, 0.0, wide / value - 1.0]);
+    for entry in table.errors.values_mut().flatten() {
+        entry.bias = 0.01;
+    }
+    let (most, least) = (libm::exp(0.06), libm::exp(0.04));
+    near(all(of(&table, &scene())), [most - 1.0, 1.0 - 1.0 / most, least - 1.0]);
 }
 
 #[test]
@@ -226,6 +239,7 @@ fn the_worst_end_of_each_assumed_value_counts() {
     ];
     let of_mesh = table.of_measure("t_90_z_rim")[1].clone();
     let changed = changes.map(|(assumed, bias)| {
+        let bias = libm::log(1.0 + bias);
         (assumed.to_owned(), Entry { bias, slopes: [0.0; FEATURES], ..of_mesh.clone() })
     });
     table.assumed.insert("t_90_z_rim".to_owned(), changed.into());
@@ -246,11 +260,13 @@ fn the_shipped_table_is_that_of_this_physics_and_agrees_with_the_names_of_the_co
     assert_eq!(table.gap(&paper, &features(&paper)), None);
     for promised in &PROMISED {
         let name = promised.measure.name();
-        assert_eq!(promised.error_column, format!("{name}_error"));
+        let names = ["below", "above"].map(|side| format!("{name}_error_{side}"));
+        assert_eq!(promised.error_columns, names);
         for n in [4, 5, 8, 10, 24] {
             let method = Method { model: ModelKind::Film, meshes: vec![n] };
             let error = table.error(&method, &features(&paper), promised).unwrap();
-            for part in [error.of_reference, error.of_itself] {
+            let [below, above] = error.of_itself;
+            for part in [error.of_reference, below + above] {
                 assert!((1e-4..2.5).contains(&part), "{name} n {n}: {part}");
             }
         }

@@ -15,8 +15,10 @@ pub struct AtLimit {
     pub limit: ResultLimit,
     /// The value, SI.
     pub value: Value,
-    /// Its mesh error, and its change over the ranges of the assumed values, SI, where they are known.
-    pub parts: [Option<f64>; 2],
+    /// Its mesh error below and above it, SI, where it is known.
+    pub mesh_error: Option<[f64; 2]>,
+    /// Its change over the ranges of the assumed values, SI, where it is known.
+    pub assumed: Option<f64>,
     /// Whether it is met; `None` for a job that is not done, and where its measure has no value.
     pub judged: Option<Judged>,
     /// The unit in which the value is shown.
@@ -28,11 +30,13 @@ impl AtLimit {
     pub fn of(table: &Table, limit: &ResultLimit, row: usize) -> Self {
         let measure = limit.measure;
         let column = table.column(measure.name());
+        let (mesh_error, assumed) = table.error_parts(measure, row);
         let si = || DisplayUnit::si(measure.column().unit);
         Self {
             limit: limit.clone(),
             value: table.estimate(measure, row).cloned().unwrap_or(Value::Null),
-            parts: table.error_parts(measure, row),
+            mesh_error,
+            assumed,
             judged: table.judge(limit, row),
             shown: column.map_or_else(si, |column| column.shown.clone()),
         }
@@ -41,13 +45,13 @@ impl AtLimit {
 
 impl Serialize for AtLimit {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let [mesh_error, assumed] = self.parts;
         json!({
             "measure": self.limit.measure.name(),
             "condition": self.limit.text,
             "value": json_value(&self.value),
-            "mesh_error": mesh_error,
-            "assumed": assumed,
+            "mesh_error_below": self.mesh_error.map(|[below, _]| below),
+            "mesh_error_above": self.mesh_error.map(|[_, above]| above),
+            "assumed": self.assumed,
             "margin": self.judged.map(|judged| judged.margin),
             "safety": self.judged.map(|judged| judged.safety().name()),
         })

@@ -1,6 +1,6 @@
 //! Tables and limits of tests.
 
-use crate::accuracy::{NO_ERROR_REASON, error_column};
+use crate::accuracy::{NO_ERROR_REASON, error_columns};
 use crate::input::value::Value;
 use crate::job::result_limit::{Condition, ResultLimit};
 use crate::job::row::{CellType, ColumnId};
@@ -60,9 +60,11 @@ pub fn limits(speed: f64) -> Vec<ResultLimit> {
 
 /// The table with this mesh error of a measure in every row, and no reason why others have none.
 pub fn with_error(mut table: Table, measure: &str, error: f64) -> Table {
-    let name = error_column(measure).unwrap();
+    let names = error_columns(measure).unwrap();
     let rows = table.rows();
-    table.columns.retain(|column| ![name, NO_ERROR_REASON].contains(&&*column.name));
-    table.columns.push(Column::plain(name, CellType::Number, vec![Value::Number(error); rows]));
+    let others = |name: &str| !names.contains(&name) && name != NO_ERROR_REASON;
+    table.columns.retain(|column| others(&column.name));
+    let column = |name| Column::plain(name, CellType::Number, vec![Value::Number(error); rows]);
+    table.columns.extend(names.map(column));
     table
 }

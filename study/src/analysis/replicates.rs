@@ -226,11 +226,11 @@ fn finest(table: &Table, rows: &[usize]) -> Vec<usize> {
 
 /// The column with the values that a point takes for a measure: the extrapolated ones, where there are.
 pub fn source<'a>(table: &'a Table, column: &'a Column) -> &'a Column {
-    let of_error = PROMISED.iter().find(|promised| promised.error_column == column.name);
-    let name = match of_error {
-        Some(promised) => extrapolated::names(promised.measure.name())[1].clone(),
-        None => extrapolated::names(&column.name)[0].clone(),
-    };
+    let of_error = PROMISED.iter().find_map(|promised| {
+        let side = promised.error_columns.iter().position(|name| *name == column.name)?;
+        Some(extrapolated::names(promised.measure.name())[1 + side].clone())
+    });
+    let name = of_error.unwrap_or_else(|| extrapolated::names(&column.name)[0].clone());
     table.column(&name).unwrap_or(column)
 }
 

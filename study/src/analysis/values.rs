@@ -1,5 +1,6 @@
 //! The values of a table's rows: as they are matched, and as measures.
 
+use crate::accuracy::error_columns;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::store::table::{Column, Table};
@@ -24,4 +25,15 @@ pub fn measured(table: &Table, measure: &Column, row: usize) -> Option<f64> {
         Value::Integer(number) => Some(number as f64),
         _ => None,
     }
+}
+
+/// The columns with the mesh error of a measure, below and above its value.
+pub fn columns_of_error<'a>(table: &'a Table, measure: &str) -> Option<[&'a Column; 2]> {
+    let [below, above] = error_columns(measure)?.map(|name| table.column(name));
+    Some([below?, above?])
+}
+
+/// The mesh error in these columns at a row, below and above the value; `None` as for a measure.
+pub fn error_at(table: &Table, [below, above]: [&Column; 2], row: usize) -> Option<[f64; 2]> {
+    Some([measured(table, below, row)?, measured(table, above, row)?])
 }

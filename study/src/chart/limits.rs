@@ -33,10 +33,11 @@ pub struct Bound {
 
 /// Measures that are extremes of a history column of another name, and the signs with which a limit of them is one of
 /// the column.
-const SERIES: [(ColumnId, &str, &[f64]); 8] = [
+const SERIES: [(ColumnId, &str, &[f64]); 9] = [
     (ColumnId::PeakVz, "vz", &[1.0]),
     (ColumnId::PeakDownwardVz, "vz", &[-1.0]),
     (ColumnId::PeakSpeed, "vz", &[1.0, -1.0]),
+    (ColumnId::PeakFilmSpeed, "film_speed", &[1.0]),
     (ColumnId::PeakPressure, "pressure", &[1.0]),
     (ColumnId::LargestZRim, "z_rim", &[1.0]),
     (ColumnId::LowestZRim, "z_rim", &[1.0]),

@@ -13,6 +13,8 @@ const MEASURES: &[(&str, &str)] = &[
     ("t_deployed", "time to deployment"),
     ("t_settled", "time to rest"),
     ("peak_speed", "peak speed of the top ring"),
+    ("peak_film_speed", "peak speed of any node"),
+    ("peak_base_force", "peak force on the base"),
     ("peak_acceleration", "peak acceleration of the top ring"),
     ("peak_vz", "peak upward ring velocity"),
     ("peak_downward_vz", "peak downward ring velocity"),

@@ -1,8 +1,8 @@
 //! The runs behind the points of a chart, where replicates repeat a point: median, range, k of n.
 
 use super::{Source, names};
-use crate::accuracy::{MeshErrors, NO_ERROR_REASON, error_column};
-use crate::analysis::compare::measured;
+use crate::accuracy::{MeshErrors, NO_ERROR_REASON};
+use crate::analysis::compare::{columns_of_error, error_at, measured};
 use crate::analysis::replicates::{self, Condensed, Runs, is_mesh};
 use crate::input::value::Value;
 use crate::render::figure::legend::{Legend, Sample};
@@ -42,16 +42,16 @@ impl<'a> Source<'a> {
 
     /// Value less and plus mesh error of a measure at a row; of several runs of their medians.
     pub(super) fn mesh_error(&self, measure: &Column, row: usize) -> Option<[f64; 2]> {
-        let errors = self.table.column(error_column(&measure.name)?)?;
+        let errors = columns_of_error(self.table, &measure.name)?;
         let value = measured(self.table, measure, row)?;
-        let error = measured(self.table, errors, row)?;
-        Some([value - error, value + error])
+        let [below, above] = error_at(self.table, errors, row)?;
+        Some([value - below, value + above])
     }
 
     /// The legend of mesh errors; `None` where no row has one.
     pub(super) fn mesh_error_legend(&self, measure: &Column) -> Option<Legend> {
         let has_error = self.rows.iter().any(|row| self.mesh_error(measure, *row).is_some());
-        let meaning = format!("against n {}, 19 of 20 runs", MeshErrors::shipped().reference);
+        let meaning = format!("against n {}, 19 of 20 runs", MeshErrors::shipped().finest);
         let outside = self.table.column(NO_ERROR_REASON).is_some_and(|reasons| {
             let has_error = |row: &&usize| self.mesh_error(measure, **row).is_some();
             self.rows.iter().filter(has_error).any(|row| reasons.cells[*row] != Value::Null)

@@ -5,7 +5,7 @@
 //! value > bound:   margin = (value − bound)/|bound|        bound 0: margin = value   (SI)
 //! word, true or false, or a time that was never reached:  margin = 1 met, −1 not met
 //! smallest margin = min over the limits
-//! met for certain: margin > u,  missed for certain: −margin ≥ u      u: uncertainty of the value in the same measure
+//! met for certain: margin > u,  missed for certain: −margin ≥ u      u: uncertainty of the value towards the limit
 //! ```
 //! A margin of 0.2 says that the value is a fifth of the bound away from it, on the safe side. Where u is not known, a
 //! limit is never met for certain. A row is safe if every limit is met for certain, unsafe if one is missed for certain,
@@ -55,7 +55,7 @@ pub struct Judged {
     pub met: bool,
     /// The margin: positive where it is met.
     pub margin: f64,
-    /// Uncertainty of the margin; `None` where it is not known.
+    /// Uncertainty of the margin towards 0; `None` where it is not known.
     pub uncertainty: Option<f64>,
 }
 
@@ -129,15 +129,21 @@ impl ResultLimit {
         )
     }
 
-    /// Whether the limit is met, and by which margin. `uncertainty` is that of the value, SI; of a word 0, or infinite
-    /// where it may be another; `None` where it is not known. `None` unless the job is done and has the measure. A time
+    /// Whether the limit is met, and by which margin. `uncertainty` is that of the value below and above it, SI; of a word
+    /// 0, or infinite where it may be another; `None` where it is not known. `None` unless the job is done and has the measure. A time
     /// without a value was never reached: it is not met below a bound.
-    pub fn judge(&self, status: Status, value: &Value, uncertainty: Option<f64>) -> Option<Judged> {
+    pub fn judge(
+        &self,
+        status: Status,
+        value: &Value,
+        uncertainty: Option<[f64; 2]>,
+    ) -> Option<Judged> {
         if status != Status::Done {
             return None;
         }
         let without_number = |met| {
             let margin = if met { WITHOUT_NUMBER } else { -WITHOUT_NUMBER };
+            let uncertainty = uncertainty.map(|[below, above]| below.max(above));
             Judged { met, margin, uncertainty }
         };
         match (&self.condition, number(value)) {
@@ -149,13 +155,19 @@ impl ResultLimit {
             (Condition::Bound { bound, above, or_equal }, Some(number)) => {
                 let distance = if *above { number - bound } else { bound - number };
                 let over = |number: f64| if *bound == 0.0 { number } else { number / bound.abs() };
-                let (margin, uncertainty) = (over(distance), uncertainty.map(over));
-                let met = match number.partial_cmp(bound)? {
+                let side = number.partial_cmp(bound)?;
+                let met = match side {
                     Ordering::Less => !above,
                     Ordering::Equal => *or_equal,
                     Ordering::Greater => *above,
                 };
-                Some(Judged { met, margin, uncertainty })
+                let towards = |[below, above]: [f64; 2]| match side {
+                    Ordering::Less => above,
+                    Ordering::Equal => below.max(above),
+                    Ordering::Greater => below,
+                };
+                let uncertainty = uncertainty.map(|sides| over(towards(sides)));
+                Some(Judged { met, margin: over(distance), uncertainty })
             }
         }
     }
@@ -197,7 +209,7 @@ impl AllJudged {
         limits: &[ResultLimit],
         status: Status,
         value: impl Fn(ColumnId) -> &'v Value,
-        uncertainty: impl Fn(ColumnId) -> Option<f64>,
+        uncertainty: impl Fn(ColumnId) -> Option<[f64; 2]>,
     ) -> Option<Self> {
         let mut all: Option<Self> = None;
         let mut unknown = false;
@@ -246,7 +258,9 @@ mod tests {
     #[test]
     fn margins_are_relative_distances_on_the_safe_side() {
         let judge = |limit: &ResultLimit, value| {
-            limit.judge(Status::Done, &value, Some(0.0)).map(|judged| (judged.met, judged.margin))
+            limit
+                .judge(Status::Done, &value, Some([0.0; 2]))
+                .map(|judged| (judged.met, judged.margin))
         };
         let speed = below(ColumnId::PeakVz, 25.0);
         assert_eq!(judge(&speed, Value::Number(20.0)), Some((true, 0.2)));
@@ -284,7 +298,7 @@ mod tests {
         let safety = |speed: Value, verdict: &str, u: Option<f64>| {
             let verdict = Value::Text(verdict.to_owned());
             let value = |column| if column == ColumnId::PeakVz { &speed } else { &verdict };
-            AllJudged::of(&limits, Status::Done, value, |_| u)
+            AllJudged::of(&limits, Status::Done, value, |_| u.map(|u| [u; 2]))
         };
         let of = |speed: f64, u| safety(Value::Number(speed), "deployed", u).unwrap().safety;
         let safe = safety(Value::Number(20.0), "deployed", Some(0.0)).unwrap();
@@ -297,11 +311,12 @@ mod tests {
         let missed = safety(Value::Null, "stalled", Some(0.0)).unwrap();
         assert_eq!(missed.safety, Safety::Unsafe, "one limit is missed for certain");
         assert_eq!(AllJudged::of(&[], Status::Done, |_| &Value::Null, |_| None), None);
-        // An uncertainty of half a metre a second of the speed, and none of the verdict.
+        // The speed may be half a metre a second less, or a whole one more.
         let speed = |number: f64| {
-            limits[0].judge(Status::Done, &Value::Number(number), Some(0.5)).unwrap().safety()
+            let sides = Some([0.5, 1.0]);
+            limits[0].judge(Status::Done, &Value::Number(number), sides).unwrap().safety()
         };
-        let found = [24.4, 24.6, 25.4, 25.6].map(speed);
+        let found = [23.9, 24.1, 25.4, 25.6].map(speed);
         let uncertain = Safety::Uncertain;
         assert_eq!(found, [Safety::Safe, uncertain, uncertain, Safety::Unsafe]);
         assert_eq!([of(1.0, None), of(30.0, None)], [uncertain, Safety::Unsafe], "not known");

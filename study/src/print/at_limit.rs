@@ -7,8 +7,8 @@ use crate::input::value::{Value, brief_number};
 use crate::job::result_limit::{Condition, Judged, Safety};
 use crate::print::range;
 
-/// The value, as in `peak_vz 18.6 ± 1.4 m/s (mesh 1.3, assumed 0.4), 7 % below 20 m/s`; with the least and the largest
-/// value over the `seeds`, SI, as in a table: `18.6 [18.1 to 18.9] ± 1.4 m/s`.
+/// The value, as in `peak_vz 18.6 −2.1 +0.8 m/s (mesh −2.1 +0.7, assumed 0.4), 7 % below 20 m/s`; with the least and the
+/// largest value over the `seeds`, SI, as in a table: `18.6 [18.1 to 18.9] −2.1 +0.8 m/s`.
 pub fn at_limit(one: &AtLimit, seeds: Option<[f64; 2]>) -> String {
     let name = one.limit.measure.name();
     let Value::Number(value) = one.value else {
@@ -18,13 +18,15 @@ pub fn at_limit(one: &AtLimit, seeds: Option<[f64; 2]>) -> String {
         };
     };
     let (unit, difference) = (&one.shown, one.shown.of_difference());
-    let [mesh, assumed] = one.parts;
-    let error = mesh.map(|mesh| libm::hypot(mesh, assumed.unwrap_or(0.0)));
+    let sides = one.mesh_error;
+    let error = sides.map(|sides| sides.map(|side| libm::hypot(side, one.assumed.unwrap_or(0.0))));
     let ends = seeds.map(|[least, largest]| (least, largest));
     let mut text = format!("{name} {} {}", range::text(value, ends, error, unit), unit.symbol());
     text.truncate(text.trim_end().len());
-    if let (Some(mesh), Some(assumed)) = (mesh, assumed) {
-        let [mesh, assumed] = [mesh, assumed].map(|part| brief_number(difference.number(part)));
+    if let (Some([below, above]), Some(assumed)) = (sides, one.assumed) {
+        let [below, above, assumed] =
+            [below, above, assumed].map(|part| brief_number(difference.number(part)));
+        let mesh = if below == above { below } else { format!("−{below} +{above}") };
         let _ = write!(text, " (mesh {mesh}, assumed {assumed})");
     }
     if let (Condition::Bound { bound, .. }, Some(judged)) = (&one.limit.condition, one.judged) {

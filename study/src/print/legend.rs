@@ -39,7 +39,7 @@ pub fn points(
         let [others @ .., next] = coarser else { return text };
         let _ = write!(
             text,
-            "; the measures with ± and the times since the release are extrapolated from n {next} and {finest} (that of \
+            "; the measures with a mesh error and the times since the release are extrapolated from n {next} and {finest} (that of \
              n {finest} where n {next} has none), all else is that of n {finest}"
         );
         for coarsest in others {
@@ -58,9 +58,9 @@ pub fn mesh_errors(shown: bool, table: &Table, meshes: &Meshes) -> Vec<String> {
     let mut notes = Vec::new();
     let reasons = || table.column(NO_ERROR_REASON).into_iter().flat_map(|one| one.cells.iter());
     if shown && reasons().any(|reason| *reason == Value::Null) {
-        let finest = MeshErrors::shipped().reference;
+        let finest = MeshErrors::shipped().finest;
         notes.push(format!(
-            "±: mesh error, which 19 of 20 runs of the table of mesh errors keep: to the value at {finest} subdivisions; what is assumed is beside it (<measure>_assumed), and limits count both"
+            "− and +, or ±: mesh error, how far below and above it the value at {finest} subdivisions may be; 19 of 20 runs of the table of mesh errors keep it; what is assumed is beside it (<measure>_assumed), and limits count both"
         ));
     }
     let texts = reasons().filter_map(|cell| match cell {
@@ -70,16 +70,16 @@ pub fn mesh_errors(shown: bool, table: &Table, meshes: &Meshes) -> Vec<String> {
     let (known, gaps): (Vec<&str>, Vec<&str>) = texts.partition(|text| !is_unknown(text));
     if shown && known.into_iter().any(is_of_pilots) {
         notes.push(
-            "±, where the table does not reach: the largest error of the pilots (no_error_reason)"
+            "− and +, where the table does not reach: the largest error of the pilots (no_error_reason)"
                 .to_owned(),
         );
     }
     let Some(gap) = gaps.first() else { return notes };
     let on_all = if meshes.of_pilots { 0 } else { meshes.list.len() };
     notes.push(match on_all {
-        0 => format!("rows without ± have no known error (no_error_reason): {gap}; {THREE_MESHES}"),
-        2 => format!("rows that the table does not cover (no_error_reason) have no ±; {THREE_MESHES}"),
-        _ => "rows that the table does not cover (no_error_reason): ± is 3 times the change of the extrapolated value \
+        0 => format!("rows without − and + have no known error (no_error_reason): {gap}; {THREE_MESHES}"),
+        2 => format!("rows that the table does not cover (no_error_reason) have no error; {THREE_MESHES}"),
+        _ => "rows that the table does not cover (no_error_reason): − and + are 3 times the change of the extrapolated value \
               from the two coarsest meshes to the two finest, or the error in the middle of the table where that is larger"
             .to_owned(),
     });

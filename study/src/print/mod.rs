@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
-use crate::accuracy::error_column;
+use crate::analysis::compare::columns_of_error;
 use crate::input::value::{Value, brief_number, json_value};
 use crate::job::proportion::Proportion;
 use crate::job::row::CellType;
@@ -85,7 +85,8 @@ pub fn fraction(value: f64, format: Format) -> Value {
 
 /// Ends of the names of columns that a table for a reader shows in the cell of another column: the smallest and the
 /// largest value, the number of all and the interval of a proportion, the mesh error.
-const PARTS: [&str; 6] = ["_least", "_largest", "_of", "_low", "_high", "_error"];
+const PARTS: [&str; 7] =
+    ["_least", "_largest", "_of", "_low", "_high", "_error_below", "_error_above"];
 
 /// Whether a reader sees a column in the cell of another one.
 pub fn is_part(table: &Table, column: &Column) -> bool {
@@ -99,7 +100,8 @@ pub fn is_part(table: &Table, column: &Column) -> bool {
 pub fn shown_cells(table: &Table, column: &Column, rows: &[usize]) -> Vec<Value> {
     let part = |end: &str| table.column(&format!("{}{end}", column.name));
     let (least, largest, of) = (part("_least"), part("_largest"), part("_of"));
-    let error = part("_error").or_else(|| table.column(error_column(&column.name)?));
+    let error = part("_error_below").zip(part("_error_above")).map(<[&Column; 2]>::from);
+    let error = error.or_else(|| columns_of_error(table, &column.name));
     let number = |part: Option<&Column>, row: usize| match part?.cells[row] {
         Value::Number(number) => Some(number),
         _ => None,
@@ -112,7 +114,9 @@ pub fn shown_cells(table: &Table, column: &Column, rows: &[usize]) -> Vec<Value>
         }
         Value::Number(value) => {
             let ends = number(least, *row).zip(number(largest, *row));
-            match (ends, number(error, *row)) {
+            let [below, above] = error.map_or([None; 2], |sides| sides.map(Some));
+            let sides = number(below, *row).zip(number(above, *row)).map(<[f64; 2]>::from);
+            match (ends, sides) {
                 (None, None) => Value::Number(column.shown.number(*value)),
                 (ends, error) => Value::Text(range::text(*value, ends, error, &column.shown)),
             }
@@ -411,24 +415,25 @@ mod tests {
                 Column { shown: milliseconds, ..column("x", [0.3, 0.2]) },
                 column("x_least", [0.3, 0.1]),
                 column("x_largest", [0.3, 0.4]),
-                column("x_error", [0.01, 0.02]),
+                column("x_error_below", [0.01, 0.02]),
+                column("x_error_above", [0.01, 0.03]),
                 count("deployed", [3, 0]),
                 count("deployed_of", [4, 0]),
             ],
         };
         let parts: Vec<bool> = table.columns.iter().map(|column| is_part(&table, column)).collect();
-        assert_eq!(parts, [false, true, true, true, false, true]);
+        assert_eq!(parts, [false, true, true, true, true, false, true]);
         let printed = |format| {
             let mut out = Vec::new();
-            let columns = [&table.columns[0], &table.columns[4]];
+            let columns = [&table.columns[0], &table.columns[5]];
             print_table(&table, &columns, &[0, 1], format, &mut out).unwrap();
             String::from_utf8(out).unwrap()
         };
         let expected = [
-            "x                      deployed",
+            "x                         deployed",
             "(ms)",
-            "300 ± 10               3 of 4 (30 to 95 %)",
-            "200 [100 to 400] ± 20  -",
+            "300 ± 10                  3 of 4 (30 to 95 %)",
+            "200 [100 to 400] −20 +30  -",
             "",
         ];
         assert_eq!(printed(Format::Table), expected.join("\n"));

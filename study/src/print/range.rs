@@ -4,7 +4,7 @@ use crate::input::units::DisplayUnit;
 use crate::input::value::short_number;
 
 /// What is between a value and its mesh error.
-pub const PLUS_MINUS: &str = " ± ";
+const PLUS_MINUS: &str = " ± ";
 /// Significant digits of a cell, at least. More are shown where the range would vanish otherwise.
 const MIN_DIGITS: usize = 3;
 /// Significant digits of a cell, at most.
@@ -20,12 +20,12 @@ fn rounded(number: f64, digits: usize) -> f64 {
     format!("{number:.*e}", digits.saturating_sub(1)).parse().unwrap_or(number)
 }
 
-/// A value in a unit, without the unit, with its smallest and largest value and its mesh error: "12.3 [11.9 to 13.1] ±
-/// 0.4". Equal values are one number.
+/// A value in a unit, without the unit, with its smallest and largest value and its mesh error below and above it:
+/// "12.3 [11.9 to 13.1] ± 0.4", "12.3 −0.6 +0.2". Equal values are one number.
 pub fn text(
     value: f64,
     ends: Option<(f64, f64)>,
-    error: Option<f64>,
+    error: Option<[f64; 2]>,
     unit: &DisplayUnit,
 ) -> String {
     let with = |digits| {
@@ -36,38 +36,42 @@ pub fn text(
     };
     let range = (MIN_DIGITS..=MAX_DIGITS).find_map(with);
     match (range, error.map(|error| with_error(value, error, unit))) {
-        (Some(range), Some(alone)) => match alone.split_once(PLUS_MINUS) {
-            Some((_, error)) => format!("{range}{PLUS_MINUS}{error}"),
-            None => range,
-        },
-        (Some(text), None) | (None, Some(text)) => text,
+        (Some(range), Some((_, error))) => format!("{range}{error}"),
+        (Some(range), None) => range,
+        (None, Some((value, error))) => format!("{value}{error}"),
         (None, None) => short_number(rounded(unit.number(value), DIGITS_ALONE)),
     }
 }
 
-/// A value with its error in a unit, without the unit: "0.1847 ± 0.0091". The error has two digits, the value as
-/// many decimals.
-fn with_error(value: f64, error: f64, unit: &DisplayUnit) -> String {
+/// A value in a unit, without the unit, and its error below and above it: "0.1847" and " ± 0.0091". The larger side has
+/// two digits, the other and the value as many decimals.
+fn with_error(value: f64, sides: [f64; 2], unit: &DisplayUnit) -> (String, String) {
     let shown = unit.number(value);
     // A unit may have an offset, as °C has; a difference has none.
-    let error = (unit.number(value + error) - shown).abs();
+    let sides = sides.map(|side| (unit.number(value + side) - shown).abs());
+    let largest = sides[0].max(sides[1]);
     // As in "9.1e-3".
-    let scientific = format!("{error:.1e}");
+    let scientific = format!("{largest:.1e}");
     let exponent =
         scientific.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok());
-    match exponent {
-        Some(exponent) if error > 0.0 && error.is_finite() => {
+    let (value, [below, above]) = match exponent {
+        Some(exponent) if largest > 0.0 && largest.is_finite() => {
             let decimals = usize::try_from(1 - exponent).unwrap_or(0);
             if decimals > MAX_DECIMALS {
-                return format!(
-                    "{}{PLUS_MINUS}{scientific}",
-                    short_number(rounded(shown, MAX_DIGITS))
-                );
+                let value = short_number(rounded(shown, MAX_DIGITS));
+                (value, sides.map(|side| format!("{side:.1e}")))
+            } else {
+                (format!("{shown:.decimals$}"), sides.map(|side| format!("{side:.decimals$}")))
             }
-            format!("{shown:.decimals$}{PLUS_MINUS}{error:.decimals$}")
         }
-        _ => short_number(rounded(shown, DIGITS_ALONE)),
-    }
+        _ => return (short_number(rounded(shown, DIGITS_ALONE)), String::new()),
+    };
+    let error = if below == above {
+        format!("{PLUS_MINUS}{below}")
+    } else {
+        format!(" −{below} +{above}")
+    };
+    (value, error)
 }
 
 #[cfg(test)]
@@ -89,12 +93,19 @@ mod tests {
     fn an_error_has_two_digits_and_its_value_as_many_decimals() {
         let seconds = DisplayUnit::si("s");
         let milliseconds = DisplayUnit::new("ms", "s").unwrap();
-        assert_eq!(with_error(0.184_664, 0.009_12, &seconds), "0.1847 ± 0.0091");
-        assert_eq!(with_error(0.184_664, 0.009_12, &milliseconds), "184.7 ± 9.1");
-        assert_eq!(with_error(23.638, 2.44, &seconds), "23.6 ± 2.4");
-        assert_eq!(with_error(0.97, 0.000_12, &seconds), "0.97000 ± 0.00012");
-        assert_eq!(with_error(1234.5, 210.0, &seconds), "1234 ± 210");
-        assert_eq!(with_error(25.269, 1.0, &seconds), "25.3 ± 1.0");
-        assert_eq!(with_error(1.0, 0.0, &seconds), "1");
+        let shown = |value, sides, unit| text(value, None, Some(sides), unit);
+        assert_eq!(shown(0.184_664, [0.009_12; 2], &seconds), "0.1847 ± 0.0091");
+        assert_eq!(shown(0.184_664, [0.009_12; 2], &milliseconds), "184.7 ± 9.1");
+        assert_eq!(shown(23.638, [2.44; 2], &seconds), "23.6 ± 2.4");
+        assert_eq!(shown(0.97, [0.000_12; 2], &seconds), "0.97000 ± 0.00012");
+        assert_eq!(shown(1234.5, [210.0; 2], &seconds), "1234 ± 210");
+        assert_eq!(shown(25.269, [1.0; 2], &seconds), "25.3 ± 1.0");
+        assert_eq!(shown(1.0, [0.0; 2], &seconds), "1");
+        assert_eq!(shown(23.638, [6.31, 0.82], &seconds), "23.6 −6.3 +0.8");
+        assert_eq!(shown(0.184_664, [0.0, 0.009_12], &milliseconds), "184.7 −0.0 +9.1");
+        assert_eq!(
+            text(0.3, Some((0.1, 0.4)), Some([0.2, 0.1]), &seconds),
+            "0.3 [0.1 to 0.4] −0.20 +0.10"
+        );
     }
 }

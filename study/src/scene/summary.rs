@@ -142,6 +142,7 @@ fn in_motion(scene: &SceneFile, run: &FilmRun, deployment: &Deployment) -> Json 
         "measures": {
             "peak_vz": deployment.measures.peak_vz,
             "t_peak_vz": deployment.measures.t_peak_vz,
+            "peak_film_speed": deployment.measures.peak_film_speed,
             "peak_kinetic_energy": deployment.measures.peak_kinetic_energy,
         },
         "energies": {"kinetic": ledger.kinetic, "strain": ledger.strain},

@@ -41,7 +41,7 @@ fn a_row_outside_the_table_says_why_it_has_no_error() {
     let folder = TestFolder::finished(&study);
     let row = &folder.rows("results/grid")[0];
     assert_eq!(row["no_error_reason"], "contact.friction 0.2: the runs of the table have 0");
-    assert_eq!(row["peak_vz_error"], Value::Null);
+    assert_eq!(row["peak_vz_error_below"], Value::Null);
 }
 
 /// One run, judged by limits above, near and below its speed.
@@ -60,10 +60,17 @@ fn a_limit_counts_as_met_only_beyond_the_uncertainty_of_the_measure() {
     };
     let first = row(100.0);
     let number = |name: &str| first[name].as_f64().unwrap();
-    let (speed, error) = (number("peak_speed"), number("peak_speed_error"));
-    let uncertainty = error.hypot(number("peak_speed_assumed"));
-    assert!(uncertainty > error && uncertainty < 0.5 * speed, "{speed} ± {uncertainty}");
-    let safety = [1.01, 0.99, -0.99, -1.01].map(|factor| row(speed + factor * uncertainty));
+    let speed = number("peak_speed");
+    let [below, above] = ["below", "above"].map(|side| {
+        number(&format!("peak_speed_error_{side}")).hypot(number("peak_speed_assumed"))
+    });
+    assert!(
+        below > 0.0 && above > 0.0 && below.max(above) < 0.5 * speed,
+        "{speed} {below} {above}"
+    );
+    // A limit above the speed is met for certain if the speed cannot be as much larger.
+    let safety = [1.01 * above, 0.99 * above, -0.99 * below, -1.01 * below];
+    let safety = safety.map(|distance| row(speed + distance));
     let safety = safety.each_ref().map(|row| row["safety"].as_str().unwrap());
     assert_eq!(safety, ["safe", "uncertain", "uncertain", "unsafe"]);
     let other = folder.stdout(&["table", "grid.json", "--json", "--set", "limits.overshoot=< 9"]);

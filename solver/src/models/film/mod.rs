@@ -261,6 +261,9 @@ impl Model for FilmRun {
             sample.z_centre = positions.z[centre];
             sample.z_rim = mean_z(positions, &rings.top_ring);
             sample.vz = mean_z(&film.state.velocities, &rings.top_ring);
+            let nodes = film.system.model.mass.iter().zip(film.state.velocities.z.iter());
+            let weight = film.system.gravity.z * film.state.time;
+            sample.support_impulse = nodes.map(|(mass, speed)| mass * (speed - weight)).sum();
             lid_force = if phase.packed { self.lid_force(rings) } else { 0.0 };
         }
         Sample {
@@ -279,6 +282,10 @@ impl Model for FilmRun {
             gas: film.gas_balance(),
             ..sample
         }
+    }
+
+    fn positions(&self) -> Field {
+        self.view().state.positions.clone()
     }
 
     fn has_rings(&self) -> bool {

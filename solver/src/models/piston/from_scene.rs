@@ -61,6 +61,8 @@ pub(super) fn build(scene: &Scene, pattern: &FoldPattern) -> Result<PistonRun, S
         volume: VolumeLaw::Stroke(stroke),
         mass: mass.effective,
         weight: scene.gravity * mass.first_moment,
+        first_moment: mass.first_moment,
+        film_weight: scene.gravity * mass.total,
         end,
         gas,
     };

@@ -1,6 +1,9 @@
 //! The motion of a piston: constants, state, equations, run.
 
+use nalgebra::Vector3;
+
 use super::{EndFilm, EndState, VolumeLaw};
+use crate::geometry::field::Field;
 use crate::integrators::dormand_prince::{Control, Integrator, System};
 use crate::mechanics::gas::{Gas, GasState};
 use crate::models::run::Model;
@@ -20,6 +23,10 @@ pub struct Piston {
     pub mass: f64,
     /// Weight: constant force along z, N.
     pub weight: f64,
+    /// Momentum of the film over the speed of the piston, kg.
+    pub first_moment: f64,
+    /// Weight of all film along z, N.
+    pub film_weight: f64,
     /// The film at full height.
     pub end: EndFilm,
     /// The gas.
@@ -250,10 +257,16 @@ impl Model for PistonRun {
             temperature: self.piston.gas.temperature(gas),
             // The lid can only push down. A force that presses the stack down acts on the stack.
             lid_force: if phase.packed { push.max(0.0) } else { 0.0 },
+            support_impulse: self.piston.first_moment * speed
+                - self.piston.film_weight * self.integrator.time,
             ledger: self.ledger(),
             gas: self.gas_balance(),
             ..Sample::default()
         }
+    }
+
+    fn positions(&self) -> Field {
+        Field::of(&[Vector3::new(0.0, 0.0, self.state().height)])
     }
 
     /// z = H + p (dV/dz)/k: above H the volume is linear in z. Without gravity, so that a design has the

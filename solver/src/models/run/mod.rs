@@ -6,6 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::geometry::field::Field;
 use crate::output::audit::{self, Audit};
 use crate::output::checkpoint::CheckpointError;
 use crate::output::events::Event;
@@ -14,6 +15,10 @@ use crate::output::history::{History, Sample, Track};
 use crate::output::measures::{self, Measures, Reference};
 use crate::output::outcome::{AuditKind, Deployment, Failure, Stop};
 use crate::scene::timeline::{Phase, Timeline};
+
+mod recent;
+
+use recent::RecentPositions;
 
 /// A model during a run. [`Run`] uses nothing else of a model, so every model has the same inflow windows,
 /// samples, ledger, measures and verdict.
@@ -40,9 +45,12 @@ pub trait Model {
         Vec::new()
     }
 
-    /// The sampled quantities now, except the mass let in ([`crate::output::ledger::GasBalance::mass_in`]):
-    /// the run loop takes it from the inflow schedule.
+    /// The sampled quantities now, except the mass let in ([`crate::output::ledger::GasBalance::mass_in`])
+    /// and the speed of the film: the run loop takes them from the inflow schedule and from [`Self::positions`].
     fn sample(&self, phase: &Phase) -> Sample;
+
+    /// The positions of its nodes now, m; of a model without nodes of what moves.
+    fn positions(&self) -> Field;
 
     /// The static equilibria with which a run of this final overpressure (Pa) is compared, for a model that
     /// has them in closed form. A model without is judged after its run
@@ -133,6 +141,8 @@ pub struct Run {
     frames: Vec<Frame>,
     /// Events so far.
     events: Vec<Event>,
+    /// Positions of the last 5 ms.
+    recent: RecentPositions,
     /// Last breakpoint or sample time reached, s.
     time: f64,
 }
@@ -221,6 +231,7 @@ impl Run {
             }
             let mut sample = model.sample(&phase);
             sample.gas.mass_in = timeline.schedule.mass_until(target);
+            sample.film_speed = self.recent.speed(target, model.positions());
             let mut values = Vec::new();
             model.follow(&mut values);
             self.samples.push(sample);

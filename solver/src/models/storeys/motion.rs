@@ -7,10 +7,13 @@
 //!
 //! Central differences, as the film's. While packed, the strips stand still and only the gas steps.
 
+use nalgebra::Vector3;
+
 use super::STRIPS;
 use super::kernel::{ElementState, ForceStep, Kick, Nodes, StepSums, advance, set_forces, volume};
 use super::rest::static_shape;
 use super::strip::Strip;
+use crate::geometry::field::Field;
 use crate::geometry::fold::FoldPattern;
 use crate::mechanics::gas::{Gas, GasState};
 use crate::models::run::Model;
@@ -290,6 +293,9 @@ impl Model for StoreysRun {
     fn sample(&self, phase: &Phase) -> Sample {
         let strip = &self.constants.strip;
         let gas = &self.constants.gas;
+        let fall = STRIPS as f64 * self.constants.gravity * self.time;
+        let nodes = strip.nodes.iter().zip(&self.velocities);
+        let support_impulse = nodes.map(|(node, v)| node.mass * (v[2].sum() - fall)).sum();
         let mean = |node: usize| self.positions[node][2].sum() / STRIPS as f64;
         let largest = |x: &[Lanes; 3]| x[2].largest();
         let lid = || {
@@ -313,6 +319,7 @@ impl Model for StoreysRun {
             pressure: gas.pressure(self.gas, self.volume),
             temperature: gas.temperature(self.gas),
             lid_force: if phase.packed { lid().max(0.0) } else { 0.0 },
+            support_impulse,
             ledger: self.ledger(),
             gas: GasBalance {
                 mass: self.gas.mass,
@@ -322,6 +329,12 @@ impl Model for StoreysRun {
             },
             ..Sample::default()
         }
+    }
+
+    fn positions(&self) -> Field {
+        let lane = |x: &[Lanes; 3], k: usize| Vector3::from([0, 1, 2].map(|axis| x[axis].0[k]));
+        let nodes = self.positions.iter().flat_map(|x| (0..STRIPS).map(move |k| lane(x, k)));
+        Field::of(&nodes.collect::<Vec<_>>())
     }
 
     fn reference(&self, final_overpressure: f64) -> Option<Reference> {

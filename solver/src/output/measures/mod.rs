@@ -17,6 +17,7 @@ mod smoothed;
 mod verdict;
 
 use hold::first_hold;
+pub use motion::MEAN_TIME;
 pub use rebound::first_rebound;
 pub use reference::{
     DESIGN_LOAD, NoReference, Reference, StaticShape, design_overpressure, final_overpressure,
@@ -78,6 +79,10 @@ pub struct Measures {
     pub peak_speed: Option<f64>,
     /// Largest mean acceleration of the top ring over twice 5 ms, up or down, m/s².
     pub peak_acceleration: Option<f64>,
+    /// Largest mean speed of any node of the film over 5 ms, m/s.
+    pub peak_film_speed: Option<f64>,
+    /// Largest mean force along z on the film over 5 ms of all that holds it (supports, lid, floor), up or down, N.
+    pub peak_base_force: Option<f64>,
     /// Largest vz, m/s.
     pub peak_vz: Option<f64>,
     /// Largest −vz, m/s.
@@ -156,11 +161,14 @@ pub fn measure(
     let (first_peak, first_minimum) = first_rebound(z_rim);
     let peak_kinetic = peak(kinetic);
     let [peak_speed, peak_acceleration] = motion::peaks(time, z_rim);
+    let [peak_base_force, _] = motion::peaks(time, column("support_impulse"));
     let largest = |values: &[f64]| peak(values).map(|(_, value)| value);
     let judged = reference.map(|reference| judge(history, reference, timeline, done));
     Measures {
         peak_speed,
         peak_acceleration,
+        peak_film_speed: largest(column("film_speed")),
+        peak_base_force,
         peak_vz: peak_vz.map(|(_, value)| value),
         peak_downward_vz: vz.iter().map(|vz| -vz).reduce(f64::max),
         t_peak_vz: peak_vz.map(|(index, _)| time[index]),

@@ -7,7 +7,6 @@ use std::collections::BTreeSet;
 use billow_solver::output::measures::Verdict;
 use serde::{Serialize, Serializer};
 
-use crate::accuracy::error_column;
 use crate::analysis::compare;
 use crate::analysis::ranking::{DEFAULT_MEASURES, Ranking, RankingInput};
 use crate::analysis::replicates::{Condensed, fixed, point_key, source};
@@ -311,9 +310,9 @@ fn extreme(
     let same = |other: f64| (other - value).abs() <= compare::ROUNDING * value.abs();
     let measured = rows.iter().filter_map(|row| compare::measured(table, column, *row));
     let others = measured.filter(|other| same(*other)).count().saturating_sub(1);
-    let errors = error_column(measure.name()).and_then(|name| table.column(name));
-    let errors = errors.map(|errors| source(table, errors));
-    let error = |row: usize| compare::measured(table, errors?, row);
+    let errors = compare::columns_of_error(table, measure.name());
+    let errors = errors.map(|sides| sides.map(|side| source(table, side)));
+    let error = |row: usize| compare::error_at(table, errors?, row);
     let within = |other: &usize| {
         let known = compare::measured(table, column, *other).zip(error(*other)).zip(error(row));
         known.is_some_and(|((other, a), b)| compare::within_errors([other, value], [a, b]))

@@ -181,13 +181,13 @@ fn a_set_of_jobs_counts_once_and_a_set_of_one_job_not_at_all() {
 #[test]
 fn points_within_the_mesh_error_of_the_best_one_are_counted_without_replicates() {
     let table = fixture::table(
-        "job N seed status verdict  peak_kinetic_energy peak_kinetic_energy_error
-         a   5 1    done   deployed 9.0                 0.5
-         b   5 2    done   deployed 8.9                 0.5
-         c   6 1    done   deployed 8.8                 0.5
-         d   6 2    done   deployed 8.5                 0.5
-         e   8 1    done   deployed 8.0                 0.5
-         f   8 2    done   deployed 8.2                 0.5",
+        "job N seed status verdict  peak_kinetic_energy peak_kinetic_energy_error_below peak_kinetic_energy_error_above
+         a   5 1    done   deployed 9.0                 0.5                             0.1
+         b   5 2    done   deployed 8.9                 0.5                             0.1
+         c   6 1    done   deployed 8.8                 0.1                             0.5
+         d   6 2    done   deployed 8.5                 0.1                             0.5
+         e   8 1    done   deployed 8.0                 0.5                             0.1
+         f   8 2    done   deployed 8.2                 0.5                             0.1",
     );
     let most = |replicates: &[String]| Answer::of_jobs(&table, replicates).most_energy.unwrap();
     let energy = most(&["seed".to_owned()]);

@@ -97,10 +97,11 @@ impl Comparison<'_> {
                     .map(|pair| Some(self.points?.spread(name, row(pair))?[index]));
                 columns.push(column(&format!("{side}_{end}"), numbers.collect()));
             }
-            if let Some(errors) = measure.errors {
+            for (end, errors) in ["below", "above"].into_iter().zip(measure.errors.iter().flatten())
+            {
                 let numbers = self.pairs.iter();
                 let numbers = numbers.map(|pair| super::measured(self.table, errors, row(pair)));
-                columns.push(column(&format!("{side}_error"), numbers.collect()));
+                columns.push(column(&format!("{side}_error_{end}"), numbers.collect()));
             }
         }
         let difference = of("difference", Compared::difference);

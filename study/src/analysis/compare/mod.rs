@@ -18,7 +18,6 @@ use std::collections::BTreeSet;
 
 use super::replicates::Condensed;
 use super::statistics::Spread;
-use crate::accuracy::error_column;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::row::{BetterSide, COLUMNS, CellType, ColumnId, DerivedColumn};
@@ -30,7 +29,7 @@ mod sets;
 mod tally;
 mod tolerance;
 
-pub use super::values::{canonical, measured};
+pub use super::values::{canonical, columns_of_error, error_at, measured};
 pub use comparison::Comparison;
 pub use sets::{Pair, Set, Sets, block, pairs};
 pub use tally::{Tally, pairs_of_jobs, tallies};
@@ -132,8 +131,8 @@ pub struct Measure<'a> {
     pub tolerance: Tolerance,
     /// The smallest and the largest values over the runs of each point; `None` for single runs.
     pub ranges: Option<[&'a Column; 2]>,
-    /// Its mesh errors, where they decide what is equal.
-    pub errors: Option<&'a Column>,
+    /// Its mesh errors, below and above its values, where they decide what is equal.
+    pub errors: Option<[&'a Column; 2]>,
 }
 
 /// Least, median and largest value over the runs of a point; of a single run its value.
@@ -154,7 +153,7 @@ impl<'a> Measure<'a> {
     /// The same with the mesh errors of a table, if the tolerance is that of the mesh error.
     #[must_use]
     pub fn with_errors(self, table: &'a Table) -> Self {
-        let errors = error_column(&self.column.name).and_then(|name| table.column(name));
+        let errors = columns_of_error(table, &self.column.name);
         let decide = self.tolerance.source == ToleranceSource::MeshError;
         Self { errors: errors.filter(|_| decide), ..self }
     }
@@ -185,10 +184,10 @@ impl<'a> Measure<'a> {
         self.tolerance.is_tie(a[1], b[1]) || (a[0] <= b[2] && b[0] <= a[2])
     }
 
-    /// Whether the values of two rows differ by less than the larger of their mesh errors, or their ranges overlap;
-    /// `None` where an error is not known.
+    /// Whether the values of two rows are within their mesh errors, or their ranges overlap; `None` where an error is not
+    /// known.
     fn equal_by_errors(&self, table: &Table, pair: Pair, a: Range, b: Range) -> Option<bool> {
-        let error = |row: usize| measured(table, self.errors?, row);
+        let error = |row: usize| error_at(table, self.errors?, row);
         let overlap = a[0] <= b[2] && b[0] <= a[2];
         Some(within_errors([a[1], b[1]], [error(pair.base)?, error(pair.other)?]) || overlap)
     }
@@ -204,9 +203,11 @@ impl<'a> Measure<'a> {
     }
 }
 
-/// Whether two values differ by no more than the larger of their mesh errors.
-pub fn within_errors([a, b]: [f64; 2], errors: [f64; 2]) -> bool {
-    (a - b).abs() <= errors[0].max(errors[1])
+/// Whether two values differ by no more than the larger of their mesh errors towards each other: each has one below and
+/// one above it.
+pub fn within_errors([a, b]: [f64; 2], [of_a, of_b]: [[f64; 2]; 2]) -> bool {
+    let [lower, upper] = if a < b { [of_a, of_b] } else { [of_b, of_a] };
+    (a - b).abs() <= lower[1].max(upper[0])
 }
 
 /// One measure of a pair.

@@ -13,7 +13,6 @@
 //! limit over the limit: near the limit its spread is the relative spread of the measure.
 
 use super::Sets;
-use crate::accuracy::error_column;
 use crate::analysis::replicates::Condensed;
 use crate::analysis::statistics::Spread;
 use crate::input::value::{Value, brief_number};
@@ -138,10 +137,11 @@ impl Tolerance {
 
 /// The median of the mesh errors of a measure over some rows, relative to its values; `None` where no row has one.
 fn mesh_error(table: &Table, rows: &[usize], measure: &Column) -> Option<f64> {
-    let errors = table.column(error_column(&measure.name)?)?;
+    let errors = super::columns_of_error(table, &measure.name)?;
     let relative = |row: &usize| {
         let value = super::measured(table, measure, *row)?;
-        Some(super::measured(table, errors, *row)? / value.abs())
+        let [below, above] = super::error_at(table, errors, *row)?;
+        Some(below.max(above) / value.abs())
     };
     let errors = rows.iter().filter_map(relative).filter(|error| error.is_finite());
     Spread::of(errors).map(|errors| errors.median)

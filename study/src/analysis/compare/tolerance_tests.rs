@@ -110,7 +110,10 @@ fn a_difference_below_the_mesh_error_of_either_value_is_a_tie() {
         (4, 1.0, "done", Some(10.4)),
     ]);
     let errors = [0.1, 0.3, 0.5].map(Value::Number).into_iter().chain([Value::Null]).collect();
-    table.columns.push(Column::plain("peak_vz_error", CellType::Number, errors));
+    let errors: Vec<Value> = errors;
+    for name in ["peak_vz_error_below", "peak_vz_error_above"] {
+        table.columns.push(Column::plain(name, CellType::Number, errors.clone()));
+    }
     let measure = table.column("peak_vz").unwrap();
     let tolerance = Tolerance::of(&table, &all(&table), measure, &[]);
     assert_eq!(tolerance.source, ToleranceSource::MeshError);

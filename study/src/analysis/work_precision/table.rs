@@ -203,7 +203,8 @@ fn runs(
             PROMISED.iter().map(|promised| number(promised.measure).map(Outcome::Number));
         // Of courses no mesh error is known.
         let mesh_error = |promised: &Promised| {
-            let error = number_in(table, promised.error_column, row)?;
+            let [below, above] = promised.error_columns.map(|name| number_in(table, name, row));
+            let error = below?.max(above?);
             number(promised.measure)
                 .filter(|value| *value != 0.0)
                 .map(|value| (error / value).abs())

@@ -92,7 +92,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
 /// SI unit of a parameter, of a column of the table or of a column of a history.
 fn si_unit(stored: &Stored<'_>, name: &str) -> Option<String> {
     let of_row = COLUMNS.iter().find(|column| column.name == name).map(|column| column.unit);
-    let error = PROMISED.iter().find(|promised| promised.error_column == name);
+    let error = PROMISED.iter().find(|promised| promised.error_columns.contains(&name));
     let of_error = error.map(|promised| promised.measure.column().unit);
     let of_history = history::COLUMNS.iter().find(|column| column.name == name);
     let is_parameter = stored.study.parameter_names().iter().any(|parameter| parameter == name);

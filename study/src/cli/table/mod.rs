@@ -5,7 +5,7 @@ use std::io::Write;
 use super::Format;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::results::{self, Opened, StudyArgs};
-use crate::accuracy::error_column;
+use crate::analysis::compare::columns_of_error;
 use crate::input::keys::numerical::SEED;
 use crate::input::value::Value;
 use crate::job::row::{ColumnId, SAME_JOB_AS};
@@ -179,8 +179,8 @@ fn notes(
         ));
     }
     let has_error = |column: &&Column| {
-        let errors = error_column(&column.name).and_then(|name| table.column(name));
-        errors.is_some_and(|errors| rows.iter().any(|row| errors.cells[*row] != Value::Null))
+        let errors = columns_of_error(table, &column.name);
+        errors.is_some_and(|[below, _]| rows.iter().any(|row| below.cells[*row] != Value::Null))
     };
     let meshes = if args.runs { Meshes::default() } else { meshes };
     notes.extend(legend::mesh_errors(columns.iter().any(has_error), table, &meshes));

@@ -195,6 +195,12 @@ columns! {
     PeakAcceleration "peak_acceleration" Number ["m/s2"] Measures Smaller
         "largest acceleration of the top ring, up or down: change of its mean speed from 5 ms to the next, over 5 ms"
         end => end.measure(|measures| measures.peak_acceleration);
+    PeakFilmSpeed "peak_film_speed" Number ["m/s"] Measures Smaller
+        "largest speed of any node of the film: mean over 5 ms"
+        end => end.measure(|measures| measures.peak_film_speed);
+    PeakBaseForce "peak_base_force" Number ["N"] Measures Smaller
+        "largest force along z of the film on what holds it (supports, lid, floor together), up or down: mean over 5 ms"
+        end => end.measure(|measures| measures.peak_base_force);
     PeakVz "peak_vz" Number ["m/s"] Measures Smaller
         "largest upward velocity of the top ring: mean of its nodes along z"
         end => end.measure(|measures| measures.peak_vz);

@@ -42,8 +42,8 @@ pub use write::{encode, encode_scene};
 
 /// Name of the format, in the attribute `format`.
 const FORMAT: &str = "billow-history";
-/// Version of the format that this program writes, and the newest that it reads.
-const VERSION: u32 = 1;
+/// Version of the format that this program writes and reads.
+const VERSION: u32 = 2;
 /// Number of samples from which a column is stored in compressed chunks. Chosen: below it, the index
 /// of the chunks takes more space than the compression saves.
 const MIN_CHUNKED_SAMPLES: usize = 512;

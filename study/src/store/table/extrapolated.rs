@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! m = m₂ + w (m₂ − m₁)      the two finest meshes, w from the table of mesh errors
-//! error = max(e, |m − m'|)    e: that of the table for these meshes;  m': from the two coarsest of three
+//! error = max(e, |m − m'|)    below and above m;  e: that of the table for these meshes;  m': from the two coarsest of three
 //! outside the table, or without runs of such scenes on the two finest, of three meshes only:
 //! error = max(e₀, 3 |m − m'|)   e₀: e of the table's base scene
 //! ```
@@ -30,27 +30,30 @@ use crate::study::Study;
 
 /// End of the name of an extrapolated value.
 pub const EXTRAPOLATED: &str = "_extrapolated";
-/// End of the name of its error.
-pub const EXTRAPOLATED_ERROR: &str = "_extrapolated_error";
+/// Ends of the names of its error, below and above it.
+pub const EXTRAPOLATED_ERRORS: [&str; 2] =
+    ["_extrapolated_error_below", "_extrapolated_error_above"];
 /// Meaning of its error, one line.
-pub const EXTRAPOLATED_ERROR_MEANING: &str = "mesh error of the extrapolated value: 19 of 20 runs are nearer to the value on the finest mesh of the table; outside the table of mesh errors it follows from three meshes and is null with two";
+pub const EXTRAPOLATED_ERROR_MEANING: &str = "mesh error of the extrapolated value: how far below, or above it the value on the finest mesh may be, kept by 19 of 20 runs; outside the table of mesh errors it follows from three meshes and is null with two";
 
-/// Name of the column with the extrapolated values of a measure, and of that with their errors.
-pub fn names(measure: &str) -> [String; 2] {
-    [format!("{measure}{EXTRAPOLATED}"), format!("{measure}{EXTRAPOLATED_ERROR}")]
+/// Name of the column with the extrapolated values of a measure, and of those with their errors below and above.
+pub fn names(measure: &str) -> [String; 3] {
+    let [below, above] = EXTRAPOLATED_ERRORS;
+    [EXTRAPOLATED, below, above].map(|end| format!("{measure}{end}"))
 }
 
 /// Whether a column holds extrapolated values or their errors.
 pub fn is_extrapolated(name: &str) -> bool {
-    let measure = name.strip_suffix(EXTRAPOLATED).or(name.strip_suffix(EXTRAPOLATED_ERROR));
+    let [below, above] = EXTRAPOLATED_ERRORS;
+    let measure = [EXTRAPOLATED, below, above].iter().find_map(|end| name.strip_suffix(end));
     measure.is_some_and(|measure| promise(measure).is_some())
 }
 
 /// Error outside the table over the difference of the two extrapolated values, at least.
 const ERROR_PER_DIFFERENCE: f64 = 3.0;
 
-/// An extrapolated value of a row, and its error if it is known.
-pub(super) type Extrapolated = Option<(f64, Option<f64>)>;
+/// An extrapolated value of a row, and its error below and above it if it is known.
+pub(super) type Extrapolated = Option<(f64, Option<[f64; 2]>)>;
 
 /// Times since the release, each with the position of its time among the promised measures.
 pub(super) const SINCE_RELEASE: [(ColumnId, ColumnId); 2] = [
@@ -130,7 +133,7 @@ impl Table {
                 Column::new(name, (CellType::Number, unit), meaning, cells.collect())
             };
             let measure = measure.name();
-            let [value, error] = names(measure);
+            let [value, below, above] = names(measure);
             let value_of = |cell: Extrapolated| cell.map(|(value, _)| value);
             new.push(column(
                 value,
@@ -138,7 +141,8 @@ impl Table {
                 value_of,
             ));
             let meaning = format!("{measure}: {EXTRAPOLATED_ERROR_MEANING}");
-            new.push(column(error, meaning, |cell| cell.and_then(|(_, error)| error)));
+            new.push(column(below, meaning.clone(), |cell| Some(cell?.1?[0])));
+            new.push(column(above, meaning, |cell| Some(cell?.1?[1])));
         };
         for (promised, cells) in PROMISED.iter().zip(values) {
             add(promised.measure, cells);
@@ -202,8 +206,10 @@ impl Table {
             Value::Number(number) => Some(*number),
             _ => None,
         };
-        let error = self.column(promised.error_column).map(|column| &column.cells[row]);
-        Some((number(self.value(promised.measure, row)?)?, error.and_then(number)))
+        let side = |name: &str| number(&self.column(name)?.cells[row]);
+        let [below, above] = promised.error_columns.map(side);
+        let error = below.zip(above).map(<[f64; 2]>::from);
+        Some((number(self.value(promised.measure, row)?)?, error))
     }
 
     /// A measure of a trusted run; the state at the end only where the capsule is deployed.
@@ -235,7 +241,7 @@ fn extrapolated(
     features: &Features,
     meshes: &[u32],
     values: &[f64],
-) -> (f64, Option<f64>) {
+) -> (f64, Option<[f64; 2]>) {
     let table = MeshErrors::shipped();
     let method = |index: usize| Method {
         model: scene.solver.model,
@@ -250,15 +256,16 @@ fn extrapolated(
     let value = of_pair(last);
     let of_table = |features: &Features| {
         let error = table.error(&method(last), features, promised).ok();
-        error.map(|error| error.of_itself * value.abs()).filter(|error| error.is_finite())
+        error.map(|error| error.of_itself.map(|side| side * value.abs()))
     };
     let observed = (last > 0).then(|| (value - of_pair(last - 1)).abs());
     let covered = table.gap(scene, features).is_none();
+    let at_least = |sides: [f64; 2], least: f64| sides.map(|side| side.max(least));
     let error = match covered.then(|| of_table(features)).flatten() {
-        Some(error) => Some(error.max(observed.unwrap_or(0.0))),
+        Some(error) => Some(at_least(error, observed.unwrap_or(0.0))),
         None => of_table(&Features { values: table.coordinates.base })
             .zip(observed)
-            .map(|(error, observed)| error.max(ERROR_PER_DIFFERENCE * observed)),
+            .map(|(error, observed)| at_least(error, ERROR_PER_DIFFERENCE * observed)),
     };
     (value, error)
 }

@@ -64,21 +64,25 @@ impl Table {
         Safety::of_cell(&self.column(DerivedColumn::Safety.name())?.cells[row])
     }
 
-    /// Mesh error of the value that a row stands for, and its change over the ranges of the assumed values, SI.
-    pub fn error_parts(&self, measure: ColumnId, row: usize) -> [Option<f64>; 2] {
+    /// Mesh error of the value that a row stands for, below and above it, and its change over the ranges of the assumed
+    /// values, SI.
+    pub fn error_parts(&self, measure: ColumnId, row: usize) -> (Option<[f64; 2]>, Option<f64>) {
         let number = |name: &str| match self.column(name)?.cells[row] {
             Value::Number(number) => Some(number),
             _ => None,
         };
-        let Some(promised) = promise(measure.name()) else { return [None; 2] };
-        let [value, error] = names(measure.name());
-        let mesh =
-            if number(&value).is_some() { number(&error) } else { number(promised.error_column) };
-        [mesh, number(promised.assumed_column)]
+        let Some(promised) = promise(measure.name()) else { return (None, None) };
+        let [value, below, above] = names(measure.name());
+        let [below, above] = if number(&value).is_some() {
+            [number(&below), number(&above)]
+        } else {
+            promised.error_columns.map(number)
+        };
+        (below.zip(above).map(<[f64; 2]>::from), number(promised.assumed_column))
     }
 
-    /// Uncertainty of the value that a row stands for, SI; `None` where it is not known.
-    pub fn uncertainty(&self, measure: ColumnId, row: usize) -> Option<f64> {
+    /// Uncertainty of the value that a row stands for, SI, below and above it; `None` where it is not known.
+    pub fn uncertainty(&self, measure: ColumnId, row: usize) -> Option<[f64; 2]> {
         let near = self.value(ColumnId::NearThreshold, row) == Some(&Value::Bool(true));
         let reason = self.column(NO_ERROR_REASON).map(|column| &column.cells[row]);
         let reason = match reason {

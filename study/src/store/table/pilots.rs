@@ -1,7 +1,7 @@
 //! Mesh errors of rows that the table of mesh errors does not cover, from the pilots of their study.
 //!
 //! ```text
-//! error/|m_n| = max over the pilots of (|m_n − m| + e)/|m_n|
+//! error below m_n = |m_n| max over the pilots of (m_n − m + e_below)/|m_n|,  above: of (m − m_n + e_above)/|m_n|,  not below 0
 //! ```
 //! Here `m_n` is a pilot's value on the mesh of the study, m its value extrapolated from three meshes, e the error of m.
 
@@ -34,21 +34,25 @@ impl Table {
         let open: Vec<usize> = (0..self.rows()).filter(is_open).collect();
         let mut filled = false;
         for promised in &PROMISED {
-            let largest: Option<Vec<f64>> =
+            let all: Option<Vec<[f64; 2]>> =
                 pilots.iter().map(|rows| self.of_pilot(promised, rows, meshes, mesh)).collect();
-            let largest = largest.and_then(|errors| errors.into_iter().reduce(f64::max));
+            let larger = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].max(b[1])];
+            let largest = all.and_then(|errors| errors.into_iter().reduce(larger));
             let Some(largest) = largest else { continue };
             filled = true;
             let since = SINCE_RELEASE.iter().filter(|(_, measure)| *measure == promised.measure);
             let measures = since.map(|(since, _)| *since).chain([promised.measure]);
-            let extrapolated: Vec<[String; 2]> = measures.map(|one| names(one.name())).collect();
+            let extrapolated: Vec<[String; 3]> = measures.map(|one| names(one.name())).collect();
             for row in &open {
                 let Some(value) = self.extrapolable(*row, promised) else { continue };
-                let error = largest * value.abs();
-                self.fill(promised.error_column, *row, error);
-                for [value, of_value] in &extrapolated {
+                let sides = largest.map(|side| side * value.abs());
+                for (name, side) in promised.error_columns.into_iter().zip(sides) {
+                    self.fill(name, *row, side);
+                }
+                for [value, below, above] in &extrapolated {
                     if self.column(value).is_some_and(|values| values.cells[*row] != Value::Null) {
-                        self.fill(of_value, *row, error);
+                        self.fill(below, *row, sides[0]);
+                        self.fill(above, *row, sides[1]);
                     }
                 }
             }
@@ -68,22 +72,22 @@ impl Table {
         self
     }
 
-    /// Error of a measure of a pilot on the mesh of the study, over its value there; 0 where the run has no value on any
-    /// mesh, `None` where it is not known.
+    /// Error of a measure of a pilot on the mesh of the study, below and above its value, over it; 0 where the run has no
+    /// value on any mesh, `None` where it is not known.
     fn of_pilot(
         &self,
         promised: &Promised,
         rows: &BTreeMap<u32, usize>,
         meshes: &[u32],
         mesh: u32,
-    ) -> Option<f64> {
+    ) -> Option<[f64; 2]> {
         let on = |n: &u32| rows.get(n).copied();
         let all: Vec<usize> = meshes.iter().map(on).collect::<Option<_>>()?;
         if !all.iter().all(|row| self.is_trusted(*row)) {
             return None;
         }
         if all.iter().all(|row| self.extrapolable(*row, promised).is_none()) {
-            return Some(0.0);
+            return Some([0.0; 2]);
         }
         let of_study = self.extrapolable(on(&mesh)?, promised).filter(|value| *value != 0.0)?;
         let finest = *all.last()?;
@@ -91,8 +95,12 @@ impl Table {
             Value::Number(number) => Some(number),
             _ => None,
         };
-        let [value, error] = names(promised.measure.name());
-        Some(((of_study - number(&value)?).abs() + number(&error)?) / of_study.abs())
+        let [value, below, above] = names(promised.measure.name());
+        let above_it = number(&value)? - of_study;
+        let sides = [number(&below)? - above_it, number(&above)? + above_it];
+        // No measure is below 0.
+        let [below, above] = sides.map(|side| (side / of_study.abs()).max(0.0));
+        Some([below.min(1.0), above])
     }
 
     /// Why each row has no mesh error.

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use billow_solver::models::film::{CONTACT_COLUMNS, FILM_STRESS_99, PLEAT_COLUMNS};
 use billow_solver::output::history::{COLUMNS as HISTORY_COLUMNS, RING_COLUMNS};
 
-use super::extrapolated::{EXTRAPOLATED, EXTRAPOLATED_ERROR, EXTRAPOLATED_ERROR_MEANING};
+use super::extrapolated::{EXTRAPOLATED, EXTRAPOLATED_ERROR_MEANING, EXTRAPOLATED_ERRORS};
 use crate::accuracy::{NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED};
 use crate::job::row::{
     BetterSide, COLUMNS, CellType, DERIVED_COLUMNS, RowColumn, SAME_JOB_AS, SAME_JOB_AS_MEANING,
@@ -71,18 +71,19 @@ fn table_columns(page: &mut String) {
         "| `margin_<measure>` | {number} | 1 |  |  |  | distance of a measure from its limit over the limit; negative \
          beyond it |"
     );
-    for promised in &PROMISED {
-        let unit = promised.measure.column().unit;
-        for (name, meaning) in promised.columns() {
-            let _ = writeln!(page, "| `{name}` | {number} | {unit} |  |  |  | {meaning} |");
-        }
+    let [first, ..] = &PROMISED;
+    for (name, meaning) in first.columns() {
+        let [name, meaning] =
+            [name, &meaning].map(|text| text.replace(first.measure.name(), "<measure>"));
+        let _ = writeln!(page, "| `{name}` | {number} | of the measure |  |  |  | {meaning} |");
     }
     let of_meshes = [
         (
             EXTRAPOLATED,
             "extrapolated from the meshes of a study with `solver.meshes`; that of the finest where the next one has none",
         ),
-        (EXTRAPOLATED_ERROR, EXTRAPOLATED_ERROR_MEANING),
+        (EXTRAPOLATED_ERRORS[0], EXTRAPOLATED_ERROR_MEANING),
+        (EXTRAPOLATED_ERRORS[1], EXTRAPOLATED_ERROR_MEANING),
     ];
     for (end, meaning) in of_meshes {
         let _ =

@@ -65,7 +65,8 @@ fn nitrogen() -> Gas {
 /// A piston on V = A z + V0 without an end.
 fn tube(area: f64, offset: f64, mass: f64, gas: Gas) -> Piston {
     let volume = VolumeLaw::Uniform { area, offset };
-    Piston { volume, mass, weight: 0.0, end: EndFilm::none(), gas }
+    let (first_moment, weight, film_weight) = (mass, 0.0, 0.0);
+    Piston { volume, mass, weight, first_moment, film_weight, end: EndFilm::none(), gas }
 }
 
 fn control(stepping: Stepping) -> Control {

@@ -1,11 +1,12 @@
 //! The table of mesh errors, from runs on several meshes.
 //!
 //! ```text
-//! v = m/m_ref − 1        one run; m_ref: median of the runs of its scene on the finest mesh
-//! where it has none:  m_ref = m_next/(1 + b_next(x))     m_next on the next mesh, b_next(x) from the scenes with both
+//! v = F ln(m/m_ref)      one run; m_ref: median of the runs of its scene on the reference mesh
+//! F = (1/n − 1/n_f)/(1/n − 1/n_ref)    to the finest mesh n_f: errors go as 1/n; 1 for a model without mesh
+//! where it has none:  m_ref = m_next e^−b_next(x)     m_next on the next mesh, b_next(x) from the scenes with both
 //! bias of a scene = median of v;  bias(x): [`super::regression`] over all scenes
 //! width = the distance from bias(x) that 19 of 20 runs keep, each predicted from all other scenes
-//! of an assumed value: v = m'/m − 1, m' the run with that value, m the median of the scene on the same mesh
+//! of an assumed value: v = ln(m'/m), m' the run with that value, m the median of the scene on the same mesh
 //! ```
 //! A value extrapolated from two meshes is m₂ + w (m₂ − m₁), with the weight w for which it is nearest to the value on
 //! the finest mesh.
@@ -31,6 +32,8 @@ const MIN_SCENES: usize = 5;
 /// Weights of an extrapolated value are at most this. Chosen: first order of meshes that differ by half gives 1, by
 /// a quarter 3.
 const MAX_WEIGHT: f64 = 3.0;
+/// Subdivisions of the finest mesh. Chosen: that of the runs of `studies/held-back.json`.
+const FINEST: u32 = 24;
 /// An assumed value that differs (empty: none does), a model, and subdivisions.
 type Kind = (String, u8, u32);
 
@@ -71,18 +74,20 @@ pub(super) fn calibrate(
         let on_both = |scene: &&SceneRuns| {
             let [next, finest] =
                 [next, reference].map(|n| scene.median(measure, (ModelKind::Film, n)));
-            Some((coordinates_of(scene)?, next? / finest? - 1.0))
+            Some((coordinates_of(scene)?, logarithm(next? / finest?)?))
         };
         let both: Vec<Point> = scenes.iter().filter_map(on_both).collect();
         let to_finest = (both.len() >= MIN_SCENES).then(|| regression(&both)).flatten();
         let finest = |scene: &SceneRuns| {
             scene.median(measure, (ModelKind::Film, reference)).or_else(|| {
                 let bias = to_finest.as_ref()?.at(&coordinates_of(scene)?);
-                Some(scene.median(measure, (ModelKind::Film, next))? / (1.0 + bias))
+                Some(scene.median(measure, (ModelKind::Film, next))? * libm::exp(-bias))
             })
         };
-        let of_measure: Vec<Scene> =
-            scenes.iter().filter_map(|scene| Scene::of(scene, measure, finest(scene)?)).collect();
+        let of_measure: Vec<Scene> = {
+            let of = |scene: &&SceneRuns| Scene::of(scene, measure, finest(scene)?, reference);
+            scenes.iter().filter_map(of).collect()
+        };
         let (of_meshes, changes) = entries(&of_measure, &coordinates, reference);
         errors.insert(measure.name().to_owned(), of_meshes);
         assumed.insert(measure.name().to_owned(), changes);
@@ -93,6 +98,7 @@ pub(super) fn calibrate(
         physics_version: PHYSICS_VERSION,
         studies,
         reference,
+        finest: FINEST.max(reference),
         coverage,
         coordinates,
         errors,
@@ -131,15 +137,17 @@ fn longest(scenes: &[SceneRuns]) -> Vec<&SceneRuns> {
 }
 
 impl Scene {
-    /// The values of a scene over that on the finest mesh.
-    fn of(scene: &SceneRuns, measure: ColumnId, finest: f64) -> Option<Self> {
+    /// The values of a scene over that on the reference mesh, to the finest one.
+    fn of(scene: &SceneRuns, measure: ColumnId, value: f64, reference: u32) -> Option<Self> {
         let mut values: BTreeMap<Kind, BTreeMap<u64, f64>> = BTreeMap::new();
         for run in &scene.runs {
             let (assumed, mesh) = (run.assumed(), run.mesh());
-            let of = if assumed.is_empty() { Some(finest) } else { scene.median(measure, mesh) };
-            if let (Some(value), Some(of)) = (run.measure(measure), of) {
+            let of = if assumed.is_empty() { Some(value) } else { scene.median(measure, mesh) };
+            let order = if assumed.is_empty() { first_order(mesh, reference) } else { 1.0 };
+            let ratio = run.measure(measure).zip(of).map(|(measured, of)| measured / of);
+            if let Some(value) = ratio.and_then(logarithm) {
                 let of_kind = values.entry((assumed, mesh.0 as u8, mesh.1)).or_default();
-                of_kind.insert(run.scene.seed, value / of - 1.0);
+                of_kind.insert(run.scene.seed, order * value);
             }
         }
         Some(Self { features: scene.runs.first()?.features.values, values })
@@ -154,7 +162,7 @@ impl Scene {
                     return Vec::new();
                 };
                 let pairs = coarse.iter().filter_map(|(seed, a)| Some((a, fine.get(seed)?)));
-                pairs.map(|(a, b)| b + weight * (b - a)).collect()
+                pairs.filter_map(|(a, b)| extrapolated([*a, *b], weight)).collect()
             }
             meshes => {
                 let values = on(meshes.first().copied().unwrap_or(0));
@@ -166,6 +174,27 @@ impl Scene {
     fn bias(&self, method: &Method, weight: f64) -> Option<f64> {
         Some(Spread::of(self.of_method(method, weight))?.median)
     }
+}
+
+/// ln of a ratio of two values; `None` unless it is above 0.
+fn logarithm(ratio: f64) -> Option<f64> {
+    (ratio > 0.0 && ratio < f64::INFINITY).then(|| libm::log(ratio))
+}
+
+/// v of the value extrapolated from two meshes, from those of its meshes.
+fn extrapolated(of_meshes: [f64; 2], weight: f64) -> Option<f64> {
+    let [coarse, fine] = of_meshes.map(libm::exp);
+    logarithm(fine + weight * (fine - coarse))
+}
+
+/// F of a mesh; 1 for a model without mesh, and for a mesh that is not coarser than the reference.
+fn first_order((model, n): (ModelKind, u32), reference: u32) -> f64 {
+    if model != ModelKind::Film || n >= reference {
+        return 1.0;
+    }
+    let [size, reference, finest] =
+        [n, reference, FINEST.max(reference)].map(|n| 1.0 / f64::from(n));
+    (size - finest) / (size - reference)
 }
 
 /// The entries of a measure: of models without a mesh, each mesh, each pair of meshes; and of each assumed value.
@@ -234,7 +263,10 @@ fn weight(scenes: &[Scene], (assumed, model, meshes): &Method) -> f64 {
     let mut product = 0.0;
     let mut square = 0.0;
     for scene in scenes {
-        let bias = |n: u32| scene.bias(&(assumed.clone(), *model, vec![n]), 0.0);
+        let bias = |n: u32| {
+            let bias = scene.bias(&(assumed.clone(), *model, vec![n]), 0.0)?;
+            Some(libm::exp(bias) - 1.0)
+        };
         if let (Some(a), Some(b)) = (bias(coarse), bias(fine)) {
             product -= b * (b - a);
             square += (b - a) * (b - a);
