@@ -166,7 +166,7 @@ def check_history(path, row):
     """Checks one history file; returns its number of frames."""
     with h5py.File(path) as file:
         check(file.attrs["format"] == "billow-history", f"{path}: format")
-        check(file.attrs["version"] == 1 and file.attrs["complete"] == 1, f"{path}: version, complete")
+        check(file.attrs["version"] == 2 and file.attrs["complete"] == 1, f"{path}: version, complete")
         check(file.attrs["job"] == path.stem == row["job"], f"{path}: job {file.attrs['job']}")
         check(file.attrs["status"] == row["status"], f"{path}: status {file.attrs['status']}")
         check("design" in json.loads(file.attrs["scene"]), f"{path}: scene without design")

@@ -62,6 +62,16 @@ impl Judged {
         }
     }
 
+    /// The proportion as a colour: a run within its uncertainty is halfway between a safe and an unsafe one.
+    fn value(self, source: &Source<'_>, row: usize, counted: Proportion) -> f64 {
+        let not_safe = match (self, source.runs_of(row)) {
+            (Self::Deployed, _) => counted.of - counted.met,
+            (Self::Safe, Some(runs)) => runs.not_safe,
+            (Self::Safe, None) => usize::from(source.table.safety(row) == Some(Safety::Unsafe)),
+        };
+        0.5 * (1.0 + (counted.met as f64 - not_safe as f64) / counted.of as f64)
+    }
+
     /// How many runs of a row can be judged, and how many of these are counted.
     pub fn proportion(self, source: &Source<'_>, row: usize) -> Proportion {
         if let Some(runs) = source.runs_of(row) {
@@ -239,7 +249,7 @@ impl<'s, 'a> Cells<'s, 'a> {
                     return Cell::letter(self.outcomes.letter(row));
                 }
                 Cell {
-                    ground: Ground::Value(proportion.met as f64 / proportion.of as f64),
+                    ground: Ground::Value(judged.value(source, row, proportion)),
                     sign: Some(Sign::Circle(self.outcomes.mark(row))),
                     text: self.text(*judged, row, proportion),
                     below: self.letters(row),
@@ -316,6 +326,10 @@ impl<'s, 'a> Cells<'s, 'a> {
                 let runs = if self.several { "k/n: k of n runs are " } else { "" };
                 let word = if self.several { format!("{word}; ") } else { String::new() };
                 notes.push(format!("{runs}{word}{meaning}."));
+                if *judged == Judged::Safe {
+                    let text = "Colour: a run within its uncertainty counts one half.";
+                    notes.push(text.to_owned());
+                }
                 if *judged == Judged::Safe && self.missed.is_empty() {
                     notes.extend(source.limits.iter().map(|limit| format!("Limit: {limit}.")));
                 }

@@ -8,7 +8,7 @@ use billow_solver::output::measures::Verdict;
 use serde::{Serialize, Serializer};
 
 use crate::analysis::compare;
-use crate::analysis::ranking::{DEFAULT_MEASURES, Ranking, RankingInput};
+use crate::analysis::ranking::{Ranking, RankingInput, default_measures};
 use crate::analysis::replicates::{Condensed, fixed, point_key, source};
 use crate::input::units::DisplayUnit;
 use crate::input::value::{Value, json_value};
@@ -223,17 +223,13 @@ fn comparison(
     zipped: &dyn Fn(&str) -> Vec<Zipped>,
 ) -> Result<Ranking, String> {
     let by = by.to_owned();
-    // What is limited first.
-    let mut measures: Vec<&str> = bounds(limits).map(|(measure, _)| measure.name()).collect();
-    let others = DEFAULT_MEASURES.into_iter().filter(|measure| !measures.contains(measure));
-    measures.extend(others.collect::<Vec<_>>());
     let ranking = Ranking::of(&RankingInput {
         table,
         rows,
         by: std::slice::from_ref(&by),
         replicates,
         limits,
-        measures: &measures,
+        measures: &default_measures(limits),
         zipped,
     })?;
     if ranking.is_one_job {

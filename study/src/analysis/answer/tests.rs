@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::analysis::fixture;
+use crate::analysis::ranking::DEFAULT_MEASURES;
 use crate::store::table::ColumnCells;
 
 /// Two flows, two residual masses, one combination infeasible, one job failed.

@@ -16,7 +16,7 @@ use super::statistics::Spread;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::proportion::Proportion;
-use crate::job::result_limit::ResultLimit;
+use crate::job::result_limit::{Condition, ResultLimit};
 use crate::job::row::{BetterSide, ColumnId, DerivedColumn};
 use crate::store::table::{Column, Table};
 use crate::study::Zipped;
@@ -28,9 +28,22 @@ mod table;
 
 use sets::{candidates, sets, shared};
 
-/// The measures of a ranking where none are asked for.
+/// The measures of a ranking where none are asked for, after those that the study limits.
 pub const DEFAULT_MEASURES: [&str; 3] =
     ["peak_vz", "peak_kinetic_energy", "t_90_z_rim_since_release"];
+
+/// The measures of a ranking where none are asked for: what is limited first.
+pub fn default_measures(limits: &[ResultLimit]) -> Vec<&'static str> {
+    let limited = limits.iter().filter(|limit| matches!(limit.condition, Condition::Bound { .. }));
+    let all = limited.map(|limit| limit.measure.name()).chain(DEFAULT_MEASURES);
+    let mut measures = Vec::new();
+    for measure in all {
+        if !measures.contains(&measure) {
+            measures.push(measure);
+        }
+    }
+    measures
+}
 
 /// What is ranked, and by what.
 pub struct RankingInput<'a> {

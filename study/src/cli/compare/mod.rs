@@ -55,7 +55,7 @@ pub struct Args {
     rank: bool,
     /// Measures, comma-separated [default: `t_90_z_rim_since_release,peak_kinetic_energy` and, in a study
     /// with limits, `smallest_margin`; for csv and json all measures for which smaller or larger is better; with --rank
-    /// `peak_vz,peak_kinetic_energy,t_90_z_rim_since_release`].
+    /// those that the study limits, then `peak_vz,peak_kinetic_energy,t_90_z_rim_since_release`].
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     measures: Vec<String>,
     /// Only rows for which this condition holds, as in `N == 6 and M >= 3`.

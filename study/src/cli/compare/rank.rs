@@ -5,7 +5,7 @@ use std::io::Write;
 
 use super::Args;
 use crate::analysis::compare::{self, measures_with};
-use crate::analysis::ranking::{Basis, DEFAULT_MEASURES, Ranking, RankingInput};
+use crate::analysis::ranking::{Basis, Ranking, RankingInput, default_measures};
 use crate::cli::Format;
 use crate::job::row::{BetterSide, DerivedColumn};
 use crate::platform::error::{Error, Result};
@@ -200,7 +200,7 @@ fn parameters(
 /// The measures, each with a better side; in a study with limits `smallest_margin` too.
 fn measures(given: &[String], study: &Study) -> Result<Vec<&'static str>> {
     if given.is_empty() {
-        return Ok(DEFAULT_MEASURES.to_vec());
+        return Ok(default_measures(study.result_limits()));
     }
     let mut known =
         [measures_with(BetterSide::Smaller), measures_with(BetterSide::Larger)].concat();
