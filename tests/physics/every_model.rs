@@ -72,6 +72,13 @@ fn what_holds_the_film_carries_its_weight_and_what_lifts_it() {
         assert!(momentum > 0.3 * mass * vz && momentum < mass * vz, "{model:?}: {momentum} {vz}");
         let largest = deployment.measures.peak_base_force.unwrap();
         assert!(largest > (impulse[30] - impulse[25]) / 5e-3 - 1e-9, "{model:?}: {largest}");
+        // Some node is as fast as the ring.
+        let fastest = deployment.followed("film_speed").iter().copied().reduce(f64::max);
+        let ring = deployment.measures.peak_speed.unwrap();
+        match fastest {
+            Some(fastest) => assert!(fastest > ring - 1e-9, "{model:?}: {fastest} {ring}"),
+            None => assert_eq!(model, ModelKind::Piston, "without nodes"),
+        }
     }
 }
 

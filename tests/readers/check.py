@@ -33,7 +33,6 @@ HISTORY_UNITS = {
     "z_rim": "m",
     "z_max": "m",
     "vz": "m/s",
-    "film_speed": "m/s",
     "volume": "m3",
     "pressure": "Pa",
     "temperature": "K",
@@ -52,6 +51,7 @@ HISTORY_UNITS = {
 FILM_UNITS = {
     "film_stress_99": "Pa",
     "vz_centre": "m/s",
+    "film_speed": "m/s",
     "interlayer_pressure": "Pa",
     "interlayer_pressure_mean": "Pa",
     "contact_area_fraction": "1",

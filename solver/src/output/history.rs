@@ -18,8 +18,6 @@ pub struct Sample {
     pub z_max: f64,
     /// Mean velocity of the top ring along z, m/s.
     pub vz: f64,
-    /// Largest speed of any node of the film, mean over the last 5 ms, m/s; 0 before that time.
-    pub film_speed: f64,
     /// Enclosed volume, m³.
     pub volume: f64,
     /// Gas pressure, Pa.
@@ -95,7 +93,6 @@ columns! {
     "z_rim" ["m"] "mean height of the top ring", |s| s.z_rim;
     "z_max" ["m"] "largest height of any node", |s| s.z_max;
     "vz" ["m/s"] "mean velocity of the top ring along z", |s| s.vz;
-    "film_speed" ["m/s"] "largest speed of any node of the film: mean over the last 5 ms", |s| s.film_speed;
     "volume" ["m3"] "enclosed volume", |s| s.volume;
     "pressure" ["Pa"] "gas pressure", |s| s.pressure;
     "temperature" ["K"] "gas temperature (film temperature while there is no gas)", |s| s.temperature;

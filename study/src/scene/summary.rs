@@ -8,6 +8,7 @@ use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::mechanics::material::Regime;
 use billow_solver::mechanics::resultants::{resultants, thickness};
 use billow_solver::models::film::{FILM_STRESS_99, FilmRun};
+use billow_solver::models::run::FILM_SPEED;
 use billow_solver::output::outcome::{Deployment, Stop};
 use billow_solver::scene::film_scene::Filling;
 use billow_solver::statics::StaticSolution;
@@ -113,6 +114,7 @@ fn in_motion(scene: &SceneFile, run: &FilmRun, deployment: &Deployment) -> Json 
         let on_support = now.reaction(&support.nodes, &support.hold.projector());
         (support.name.clone(), reaction(on_support))
     });
+    let largest = |track: &str| deployment.followed(track).iter().copied().fold(0.0, f64::max);
     let more = json!({
         "volume": run.volume(),
         "pressure": now.state.pressure,
@@ -142,12 +144,12 @@ fn in_motion(scene: &SceneFile, run: &FilmRun, deployment: &Deployment) -> Json 
         "measures": {
             "peak_vz": deployment.measures.peak_vz,
             "t_peak_vz": deployment.measures.t_peak_vz,
-            "peak_film_speed": deployment.measures.peak_film_speed,
+            "peak_film_speed": largest(FILM_SPEED.0),
             "peak_kinetic_energy": deployment.measures.peak_kinetic_energy,
         },
         "energies": {"kinetic": ledger.kinetic, "strain": ledger.strain},
         "film_stress": now.accounting().film_stress,
-        "film_stress_99": deployment.followed(FILM_STRESS_99.0).iter().copied().fold(0.0, f64::max),
+        "film_stress_99": largest(FILM_STRESS_99.0),
         "steps": now.steps(),
         "end_time": now.state.time,
     });

@@ -284,8 +284,8 @@ impl Model for FilmRun {
         }
     }
 
-    fn positions(&self) -> Field {
-        self.view().state.positions.clone()
+    fn positions(&self) -> Option<Field> {
+        Some(self.view().state.positions.clone())
     }
 
     fn has_rings(&self) -> bool {

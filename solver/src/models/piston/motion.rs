@@ -1,9 +1,6 @@
 //! The motion of a piston: constants, state, equations, run.
 
-use nalgebra::Vector3;
-
 use super::{EndFilm, EndState, VolumeLaw};
-use crate::geometry::field::Field;
 use crate::integrators::dormand_prince::{Control, Integrator, System};
 use crate::mechanics::gas::{Gas, GasState};
 use crate::models::run::Model;
@@ -263,10 +260,6 @@ impl Model for PistonRun {
             gas: self.gas_balance(),
             ..Sample::default()
         }
-    }
-
-    fn positions(&self) -> Field {
-        Field::of(&[Vector3::new(0.0, 0.0, self.state().height)])
     }
 
     /// z = H + p (dV/dz)/k: above H the volume is linear in z. Without gravity, so that a design has the

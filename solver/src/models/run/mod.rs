@@ -18,6 +18,7 @@ use crate::scene::timeline::{Phase, Timeline};
 
 mod recent;
 
+pub use recent::FILM_SPEED;
 use recent::RecentPositions;
 
 /// A model during a run. [`Run`] uses nothing else of a model, so every model has the same inflow windows,
@@ -45,12 +46,14 @@ pub trait Model {
         Vec::new()
     }
 
-    /// The sampled quantities now, except the mass let in ([`crate::output::ledger::GasBalance::mass_in`])
-    /// and the speed of the film: the run loop takes them from the inflow schedule and from [`Self::positions`].
+    /// The sampled quantities now, except the mass let in ([`crate::output::ledger::GasBalance::mass_in`]):
+    /// the run loop takes it from the inflow schedule.
     fn sample(&self, phase: &Phase) -> Sample;
 
-    /// The positions of its nodes now, m; of a model without nodes of what moves.
-    fn positions(&self) -> Field;
+    /// The positions of its nodes now, m; `None` for a model without nodes.
+    fn positions(&self) -> Option<Field> {
+        None
+    }
 
     /// The static equilibria with which a run of this final overpressure (Pa) is compared, for a model that
     /// has them in closed form. A model without is judged after its run
@@ -150,7 +153,7 @@ pub struct Run {
 impl Run {
     /// Whether it can be a run of this model: every sample has a value of each of its tracks.
     pub fn fits(&self, model: &dyn Model) -> bool {
-        let tracks = model.tracks().len();
+        let tracks = tracks(model).len();
         self.tracks.len() == self.samples.len() && self.tracks.iter().all(|row| row.len() == tracks)
     }
 
@@ -231,9 +234,9 @@ impl Run {
             }
             let mut sample = model.sample(&phase);
             sample.gas.mass_in = timeline.schedule.mass_until(target);
-            sample.film_speed = self.recent.speed(target, model.positions());
             let mut values = Vec::new();
             model.follow(&mut values);
+            values.extend(model.positions().map(|now| self.recent.speed(target, now)));
             self.samples.push(sample);
             self.tracks.push(values);
             let height = if model.has_rings() { sample.z_centre } else { sample.z_max };
@@ -286,7 +289,7 @@ impl Run {
                 measures::measure(&history, reference.as_ref(), timeline, stress, done)
             }
         };
-        let mut tracks = model.tracks();
+        let mut tracks = tracks(model);
         for (index, track) in tracks.iter_mut().enumerate() {
             track.values = self.tracks.iter().map(|row| row[index]).collect();
         }
@@ -298,6 +301,15 @@ impl Run {
         let events = self.events;
         Deployment { history, tracks, events, frames, measures, audit, stop, steps, elements }
     }
+}
+
+/// The tracks of a model without values, and the speed of its nodes.
+fn tracks(model: &dyn Model) -> Vec<Track> {
+    let (name, unit, meaning) = FILM_SPEED;
+    let speed = || Track { name: name.to_owned(), unit, meaning, values: Vec::new() };
+    let mut tracks = model.tracks();
+    tracks.extend(model.positions().map(|_| speed()));
+    tracks
 }
 
 /// What the residuals of a whole history show: a gas that does not add up, or a ledger that does not close.

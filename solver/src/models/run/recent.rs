@@ -13,6 +13,9 @@ use serde::{Deserialize, Serialize};
 use crate::geometry::field::Field;
 use crate::output::measures::MEAN_TIME;
 
+/// Name, unit and meaning of the track of the largest speed.
+pub const FILM_SPEED: (&str, &str, &str) =
+    ("film_speed", "m/s", "largest speed of any node of the film: mean over the last 5 ms");
 /// Time between positions that are kept, s. Chosen: τ is then at most a fifth longer where samples are closer.
 const KEPT_INTERVAL: f64 = MEAN_TIME / 5.0;
 /// Part of a time that rounding may take from it. Chosen.

@@ -49,10 +49,6 @@ impl Model for Recorder {
         Sample { time, volume: 1.0, z_rim: 1.0, ledger, gas, ..Sample::default() }
     }
 
-    fn positions(&self) -> Field {
-        Field::default()
-    }
-
     fn reference(&self, overpressure: f64) -> Option<Reference> {
         let shape = StaticShape { overpressure, volume: 1.0, height: 1.0 };
         Some(Reference::constant(shape))

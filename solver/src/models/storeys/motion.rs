@@ -331,10 +331,10 @@ impl Model for StoreysRun {
         }
     }
 
-    fn positions(&self) -> Field {
+    fn positions(&self) -> Option<Field> {
         let lane = |x: &[Lanes; 3], k: usize| Vector3::from([0, 1, 2].map(|axis| x[axis].0[k]));
         let nodes = self.positions.iter().flat_map(|x| (0..STRIPS).map(move |k| lane(x, k)));
-        Field::of(&nodes.collect::<Vec<_>>())
+        Some(Field::of(&nodes.collect::<Vec<_>>()))
     }
 
     fn reference(&self, final_overpressure: f64) -> Option<Reference> {

@@ -79,8 +79,6 @@ pub struct Measures {
     pub peak_speed: Option<f64>,
     /// Largest mean acceleration of the top ring over twice 5 ms, up or down, m/s².
     pub peak_acceleration: Option<f64>,
-    /// Largest mean speed of any node of the film over 5 ms, m/s.
-    pub peak_film_speed: Option<f64>,
     /// Largest mean force along z on the film over 5 ms of all that holds it (supports, lid, floor), up or down, N.
     pub peak_base_force: Option<f64>,
     /// Largest vz, m/s.
@@ -167,7 +165,6 @@ pub fn measure(
     Measures {
         peak_speed,
         peak_acceleration,
-        peak_film_speed: largest(column("film_speed")),
         peak_base_force,
         peak_vz: peak_vz.map(|(_, value)| value),
         peak_downward_vz: vz.iter().map(|vz| -vz).reduce(f64::max),

@@ -41,7 +41,6 @@ fn history(volume: impl Fn(f64) -> f64, height: impl Fn(f64) -> f64) -> History 
             ledger,
             pressure: 5.0,
             temperature: 290.0,
-            film_speed: vz.abs(),
             // 2 kg that the supports alone move.
             support_impulse: 2.0 * vz,
             lid_force: if k < 10 { f64::from(k) } else { 0.0 },
@@ -82,7 +81,6 @@ fn a_ramp_has_the_expected_measures() {
     near(m.peak_downward_vz, 0.0);
     // It stops within one of the two times of 5 ms.
     near(m.peak_acceleration, 10.0 / 5e-3);
-    near(m.peak_film_speed, 10.0);
     near(m.peak_base_force, 2.0 * 10.0 / 5e-3);
     assert_eq!(m.lowest_z_rim, None, "it has no peak");
     near(m.largest_z_rim, 1.0);

@@ -1,7 +1,7 @@
 //! What the columns of a row are taken from: the job, how it ended, its fold pattern.
 
 use billow_solver::geometry::fold::{FoldError, FoldPattern};
-use billow_solver::models::film::{CONTACT_COLUMNS, FILM_STRESS_99};
+use billow_solver::models::film::CONTACT_COLUMNS;
 use billow_solver::output::audit::Audit;
 use billow_solver::output::measures::{Measures, Verdict};
 use billow_solver::output::outcome::{Deployment, Failure, Stop};
@@ -91,11 +91,10 @@ impl<'a> JobEnd<'a> {
         self.deployment()?.followed(track).iter().copied().reduce(pick)
     }
 
-    /// Largest value of [`FILM_STRESS_99`] over the samples, Pa, and its first time, s; `None` for a model
-    /// without a mesh.
-    pub fn film_stress_99(&self) -> Option<[f64; 2]> {
+    /// Largest value of a track over the samples, SI, and its first time, s; `None` for a model without it.
+    pub fn largest(&self, track: &str) -> Option<[f64; 2]> {
         let run = self.deployment()?;
-        let values = run.followed(FILM_STRESS_99.0);
+        let values = run.followed(track);
         let times = run.history.column("time");
         let samples = values.iter().zip(times).map(|(value, time)| [*value, *time]);
         samples.reduce(|largest, sample| if sample[0] > largest[0] { sample } else { largest })

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use billow_solver::models::film::{CONTACT_COLUMNS, FILM_STRESS_99, PLEAT_COLUMNS};
+use billow_solver::models::run::FILM_SPEED;
 use billow_solver::output::history::{COLUMNS as HISTORY_COLUMNS, RING_COLUMNS};
 
 use super::extrapolated::{EXTRAPOLATED, EXTRAPOLATED_ERROR_MEANING, EXTRAPOLATED_ERRORS};
@@ -144,8 +145,11 @@ fn history_columns(page: &mut String) {
         page,
         "| `vz_centre` | m/s | film with rings | velocity of the top centre node along z |"
     );
-    let (name, unit, meaning) = FILM_STRESS_99;
-    let _ = writeln!(page, "| `{name}` | {unit} | film | {meaning} |");
+    for ((name, unit, meaning), present) in
+        [(FILM_STRESS_99, "film"), (FILM_SPEED, "film and storeys")]
+    {
+        let _ = writeln!(page, "| `{name}` | {unit} | {present} | {meaning} |");
+    }
     for (name, unit, meaning) in CONTACT_COLUMNS {
         let _ = writeln!(page, "| `{name}` | {unit} | film with contact | {meaning} |");
     }
