@@ -29,12 +29,14 @@ macro_rules! promised {
 }
 
 /// The promised measures, in the order of their columns.
-pub const PROMISED: [Promised; 13] = [
+pub const PROMISED: [Promised; 15] = [
     promised!(T50ZRim, "t_50_z_rim", true),
     promised!(T90ZRim, "t_90_z_rim", true),
     promised!(TDeployed, "t_deployed", false),
     promised!(PeakSpeed, "peak_speed", false),
     promised!(PeakAcceleration, "peak_acceleration", false),
+    promised!(PeakFilmSpeed, "peak_film_speed", false),
+    promised!(PeakBaseForce, "peak_base_force", false),
     promised!(PeakVz, "peak_vz", false),
     promised!(PeakDownwardVz, "peak_downward_vz", false),
     promised!(PeakKineticEnergy, "peak_kinetic_energy", true),
