@@ -67,8 +67,7 @@ impl RowErrors {
                 return None;
             }
             match table.error(&method, &features, &promised) {
-                Ok(error) => Some(error.of_itself.map(|side| side * value.abs()))
-                    .filter(|sides| sides.iter().all(|side| side.is_finite())),
+                Ok(error) => Some(error.of_itself.map(|side| side * value.abs())),
                 Err(gap) => {
                     reason = Some(gap);
                     None

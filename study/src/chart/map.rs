@@ -63,7 +63,7 @@ impl Judged {
     }
 
     /// The proportion as a colour: a run within its uncertainty is halfway between a safe and an unsafe one.
-    fn value(self, source: &Source<'_>, row: usize, counted: Proportion) -> f64 {
+    pub(super) fn value(self, source: &Source<'_>, row: usize, counted: Proportion) -> f64 {
         let not_safe = match (self, source.runs_of(row)) {
             (Self::Deployed, _) => counted.of - counted.met,
             (Self::Safe, Some(runs)) => runs.not_safe,
@@ -198,7 +198,8 @@ impl<'a> Quantity<'a> {
             }
             Self::Proportion(judged) => {
                 let name = format!("proportion of {} runs", judged.words()[0]);
-                (name.clone(), Some((names::capital(&name), [0.0, 1.0])))
+                let half = if *judged == Judged::Safe { ", uncertain ones one half" } else { "" };
+                (name.clone(), Some((format!("{}{half}", names::capital(&name)), [0.0, 1.0])))
             }
         }
     }
@@ -326,10 +327,6 @@ impl<'s, 'a> Cells<'s, 'a> {
                 let runs = if self.several { "k/n: k of n runs are " } else { "" };
                 let word = if self.several { format!("{word}; ") } else { String::new() };
                 notes.push(format!("{runs}{word}{meaning}."));
-                if *judged == Judged::Safe {
-                    let text = "Colour: a run within its uncertainty counts one half.";
-                    notes.push(text.to_owned());
-                }
                 if *judged == Judged::Safe && self.missed.is_empty() {
                     notes.extend(source.limits.iter().map(|limit| format!("Limit: {limit}.")));
                 }

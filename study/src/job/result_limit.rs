@@ -130,8 +130,8 @@ impl ResultLimit {
     }
 
     /// Whether the limit is met, and by which margin. `uncertainty` is that of the value below and above it, SI; of a word
-    /// 0, or infinite where it may be another; `None` where it is not known. `None` unless the job is done and has the measure. A time
-    /// without a value was never reached: it is not met below a bound.
+    /// 0, or infinite where it may be another; `None` where it is not known. `None` unless the job is done and has the
+    /// measure. A time without a value was never reached: it is not met below a bound.
     pub fn judge(
         &self,
         status: Status,
@@ -319,6 +319,14 @@ mod tests {
         let found = [23.9, 24.1, 25.4, 25.6].map(speed);
         let uncertain = Safety::Uncertain;
         assert_eq!(found, [Safety::Safe, uncertain, uncertain, Safety::Unsafe]);
+        let above = Condition::Bound { bound: 25.0, above: true, or_equal: false };
+        let above = ResultLimit { condition: above, ..below(ColumnId::FinalVolume, 25.0) };
+        let height = |number: f64| {
+            let sides = Some([0.5, 1.0]);
+            above.judge(Status::Done, &Value::Number(number), sides).unwrap().safety()
+        };
+        let found = [23.9, 24.1, 25.4, 25.6].map(height);
+        assert_eq!(found, [Safety::Unsafe, uncertain, uncertain, Safety::Safe]);
         assert_eq!([of(1.0, None), of(30.0, None)], [uncertain, Safety::Unsafe], "not known");
     }
 }

@@ -154,7 +154,9 @@ impl Run {
     /// Whether it can be a run of this model: every sample has a value of each of its tracks.
     pub fn fits(&self, model: &dyn Model) -> bool {
         let tracks = tracks(model).len();
-        self.tracks.len() == self.samples.len() && self.tracks.iter().all(|row| row.len() == tracks)
+        self.tracks.len() == self.samples.len()
+            && self.tracks.iter().all(|row| row.len() == tracks)
+            && self.recent.fits(model.positions().map_or(0, |now| now.len()))
     }
 
     /// Continues to the end of the timeline, as [`run`] does.

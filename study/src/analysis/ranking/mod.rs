@@ -32,10 +32,14 @@ use sets::{candidates, sets, shared};
 pub const DEFAULT_MEASURES: [&str; 3] =
     ["peak_vz", "peak_kinetic_energy", "t_90_z_rim_since_release"];
 
-/// The measures of a ranking where none are asked for: what is limited first.
+/// The measures of a ranking where none are asked for: what is limited and has a better side first.
 pub fn default_measures(limits: &[ResultLimit]) -> Vec<&'static str> {
-    let limited = limits.iter().filter(|limit| matches!(limit.condition, Condition::Bound { .. }));
-    let all = limited.map(|limit| limit.measure.name()).chain(DEFAULT_MEASURES);
+    let is_ordered = |limit: &&ResultLimit| {
+        matches!(limit.condition, Condition::Bound { .. })
+            && limit.measure.column().better != BetterSide::Neither
+    };
+    let limited = limits.iter().filter(is_ordered).map(|limit| limit.measure.name());
+    let all = limited.chain(DEFAULT_MEASURES);
     let mut measures = Vec::new();
     for measure in all {
         if !measures.contains(&measure) {

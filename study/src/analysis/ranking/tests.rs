@@ -21,6 +21,21 @@ fn table(runs: &[Run]) -> Table {
     fixture::table_of(names, runs.iter().enumerate().map(row))
 }
 
+#[test]
+fn what_is_limited_is_ranked_by_first_and_once() {
+    let of = |limits: &[ResultLimit]| default_measures(limits);
+    assert_eq!(of(&[]), DEFAULT_MEASURES);
+    let mut limits = limits(25.0);
+    limits[0].measure = ColumnId::PeakSpeed;
+    let limited = [limits.clone(), limits].concat();
+    assert_eq!(of(&limited)[..2], ["peak_speed", "peak_vz"]);
+    assert_eq!(of(&limited).len(), 4);
+    let mut neither = limited;
+    neither[0].measure = ColumnId::FinalVolume;
+    neither[2].measure = ColumnId::FinalVolume;
+    assert_eq!(of(&neither), DEFAULT_MEASURES, "a larger final volume is no better");
+}
+
 fn ranked(runs: &[Run], by: &[&str], limits: &[ResultLimit]) -> Ranking {
     ranked_with(runs, by, limits, &["peak_vz"])
 }

@@ -150,6 +150,20 @@ fn a_map_of_outcomes_counts_safe_runs_and_names_missed_limits() {
     let single = Source { limits: &limits, ..source(&single) };
     let texts = check::figure(&map::svg(&single, "safe", ["mass_flow_rate", "N"]).unwrap());
     shows(&texts, &["safe", "unsafe", "∅", "S", "P"]);
+    // With an error that is larger than every margin no run is safe for certain: it counts one half.
+    let colours = |error: f64| {
+        let table = with_error(mixed(), "peak_vz", error).judged(&limits);
+        let source = Source { limits: &limits, ..source(&table) };
+        let judged = map::Judged::Safe;
+        let counted = |row: &usize| Some(judged.proportion(&source, *row)).filter(|all| all.of > 0);
+        let rows = source.rows.iter();
+        let colour = |row: &usize| Some(judged.value(&source, *row, counted(row)?));
+        rows.filter_map(colour).collect::<Vec<f64>>()
+    };
+    let has = |colours: &[f64], value: f64| colours.iter().any(|one| (one - value).abs() < 1e-9);
+    let (certain, uncertain) = (colours(0.0), colours(100.0));
+    assert!(has(&certain, 1.0) && has(&certain, 0.0) && !has(&certain, 0.5), "{certain:?}");
+    assert!(has(&uncertain, 0.5) && !has(&uncertain, 1.0), "{uncertain:?}");
     let table = mixed();
     let error = map::svg(&source(&table), "safe", ["mass_flow_rate", "N"]).unwrap_err();
     assert!(error.to_string().contains("the study has no limits"), "{error}");

@@ -198,8 +198,8 @@ columns! {
         "largest acceleration of the top ring, up or down: change of its mean speed from 5 ms to the next, over 5 ms"
         end => end.measure(|measures| measures.peak_acceleration);
     PeakFilmSpeed "peak_film_speed" Number ["m/s"] Measures Smaller
-        "largest speed of any node of the film: mean over 5 ms; null for the model piston"
-        end => end.largest(FILM_SPEED.0).map(|[speed, _]| speed);
+        "largest speed of any node of the film: mean over 5 ms; null for the model piston, and for film that rests or a run below 5 ms"
+        end => end.largest(FILM_SPEED.0).map(|[speed, _]| speed).filter(|speed| *speed > 0.0);
     PeakBaseForce "peak_base_force" Number ["N"] Measures Smaller
         "largest force along z of the film on what holds it (supports, lid, floor together), up or down: mean over 5 ms"
         end => end.measure(|measures| measures.peak_base_force);

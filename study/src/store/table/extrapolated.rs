@@ -34,7 +34,7 @@ pub const EXTRAPOLATED: &str = "_extrapolated";
 pub const EXTRAPOLATED_ERRORS: [&str; 2] =
     ["_extrapolated_error_below", "_extrapolated_error_above"];
 /// Meaning of its error, one line.
-pub const EXTRAPOLATED_ERROR_MEANING: &str = "mesh error of the extrapolated value: how far below, or above it the value on the finest mesh may be, kept by 19 of 20 runs; outside the table of mesh errors it follows from three meshes and is null with two";
+pub const EXTRAPOLATED_ERROR_MEANING: &str = "mesh error of the extrapolated value: how far below or above it, as its name says, the value on the finest mesh of the table (n 24) may be, kept by 19 of 20 runs; outside the table of mesh errors it follows from three meshes and is null with two";
 
 /// Name of the column with the extrapolated values of a measure, and of those with their errors below and above.
 pub fn names(measure: &str) -> [String; 3] {
@@ -202,14 +202,8 @@ impl Table {
 
     /// The value of a row on the finest mesh with its mesh error, where a coarser mesh has no value.
     fn of_one_mesh(&self, row: usize, promised: &Promised) -> Extrapolated {
-        let number = |value: &Value| match value {
-            Value::Number(number) => Some(*number),
-            _ => None,
-        };
-        let side = |name: &str| number(&self.column(name)?.cells[row]);
-        let [below, above] = promised.error_columns.map(side);
-        let error = below.zip(above).map(<[f64; 2]>::from);
-        Some((number(self.value(promised.measure, row)?)?, error))
+        let Value::Number(value) = self.value(promised.measure, row)? else { return None };
+        Some((*value, self.error_parts(promised.measure, row).0))
     }
 
     /// A measure of a trusted run; the state at the end only where the capsule is deployed.

@@ -1,7 +1,8 @@
 //! Mesh errors of rows that the table of mesh errors does not cover, from the pilots of their study.
 //!
 //! ```text
-//! error below m_n = |m_n| max over the pilots of (m_n − m + e_below)/|m_n|,  above: of (m − m_n + e_above)/|m_n|,  not below 0
+//! error below a value, over it = max over the pilots of (m_n − m + e_below)/|m_n|, from 0 to 1
+//! above it                     = max over the pilots of (m − m_n + e_above)/|m_n|, from 0
 //! ```
 //! Here `m_n` is a pilot's value on the mesh of the study, m its value extrapolated from three meshes, e the error of m.
 

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! v = F ln(m/m_ref)      one run; m_ref: median of the runs of its scene on the reference mesh
-//! F = (1/n − 1/n_f)/(1/n − 1/n_ref)    to the finest mesh n_f: errors go as 1/n; 1 for a model without mesh
-//! where it has none:  m_ref = m_next e^−b_next(x)     m_next on the next mesh, b_next(x) from the scenes with both
+//! F = (1/n − 1/n_f)/(1/n − 1/n_ref)    to the finest mesh n_f: errors go as 1/n;  1 for models without mesh:
+//!                        their errors are against n_ref
 //! bias of a scene = median of v;  bias(x): [`super::regression`] over all scenes
 //! width = the distance from bias(x) that 19 of 20 runs keep, each predicted from all other scenes
 //! of an assumed value: v = ln(m'/m), m' the run with that value, m the median of the scene on the same mesh
@@ -62,30 +62,12 @@ pub(super) fn calibrate(
     let coverage = Coverage::of(unchanged.map(|run| (&run.scene, run.features)))?;
     let coordinates = coordinates(&scenes);
     let (mut errors, mut assumed) = (BTreeMap::new(), BTreeMap::new());
-    let next = all().filter_map(|run| match run.mesh() {
-        (ModelKind::Film, n) if n < reference => Some(n),
-        _ => None,
-    });
-    let next = next.max()?;
     for promised in &PROMISED {
         let measure = promised.measure;
-        let coordinates_of =
-            |scene: &SceneRuns| Some(coordinates.of(&scene.runs.first()?.features.values));
-        let on_both = |scene: &&SceneRuns| {
-            let [next, finest] =
-                [next, reference].map(|n| scene.median(measure, (ModelKind::Film, n)));
-            Some((coordinates_of(scene)?, logarithm(next? / finest?)?))
-        };
-        let both: Vec<Point> = scenes.iter().filter_map(on_both).collect();
-        let to_finest = (both.len() >= MIN_SCENES).then(|| regression(&both)).flatten();
-        let finest = |scene: &SceneRuns| {
-            scene.median(measure, (ModelKind::Film, reference)).or_else(|| {
-                let bias = to_finest.as_ref()?.at(&coordinates_of(scene)?);
-                Some(scene.median(measure, (ModelKind::Film, next))? * libm::exp(-bias))
-            })
-        };
+        let of_reference = |scene: &SceneRuns| scene.median(measure, (ModelKind::Film, reference));
         let of_measure: Vec<Scene> = {
-            let of = |scene: &&SceneRuns| Scene::of(scene, measure, finest(scene)?, reference);
+            let of =
+                |scene: &&SceneRuns| Scene::of(scene, measure, of_reference(scene)?, reference);
             scenes.iter().filter_map(of).collect()
         };
         let (of_meshes, changes) = entries(&of_measure, &coordinates, reference);

@@ -26,7 +26,7 @@ pub struct Args {
     /// Write the table of mesh errors to this file, JSON.
     #[arg(long, value_name = "FILE")]
     table: Option<PathBuf>,
-    /// Subdivisions of the finest mesh of that table.
+    /// Subdivisions of the mesh with which that table compares the others.
     #[arg(long, value_name = "N", default_value_t = 24, requires = "table")]
     reference: u32,
     #[command(flatten)]

@@ -76,6 +76,12 @@ fn bias_and_changes_are_those_of_the_runs() {
     assert!((pair.weight - 2.0 / 3.0).abs() < 0.05, "first order: {}", pair.weight);
     assert!(bias(pair, 0).abs() < 2e-3, "{}", pair.bias);
     assert!(calibrate(&scenes(), Vec::new(), 32).is_none(), "no run on this mesh");
+    // Against n 16 the errors are taken to n 24, by their first order.
+    let table = calibrate(&scenes(), Vec::new(), 16).unwrap();
+    let eight = table.entry(&film(&[8]), "t_90_z_rim").unwrap();
+    let bias = eight.bias(&table.coordinates.of(&all[0].runs[0].features.values));
+    assert!((bias - against_finest(0.2, 8.0)).abs() < 1e-3, "{bias}");
+    assert_eq!((table.reference, table.finest), (16, 24));
 }
 
 /// A loss that slows every capsule by 3 %, on the coarsest mesh.
