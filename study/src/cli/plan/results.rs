@@ -23,6 +23,15 @@ const FILM_ONLY: [ColumnId; 7] = [
     ColumnId::SmallestGap,
 ];
 
+/// Whether a model does not compute a measure.
+fn lacks(model: ModelKind, measure: ColumnId) -> bool {
+    match model {
+        ModelKind::Film => false,
+        ModelKind::Storeys => FILM_ONLY.contains(&measure),
+        ModelKind::Piston => FILM_ONLY.contains(&measure) || measure == ColumnId::PeakFilmSpeed,
+    }
+}
+
 /// What a reader of the plan must know of its searches and limits.
 pub(super) fn notes(study: &Study, counts: &PlanCounts) -> Vec<String> {
     let mut notes: Vec<String> = search(study, counts).into_iter().collect();
@@ -92,29 +101,21 @@ fn limits(study: &Study) -> Vec<String> {
                 .to_owned(),
         );
     }
-    let without_film = study.points().iter().map(|point| point.job.scene.solver.model);
-    let without_film: Vec<ModelKind> =
-        without_film.filter(|model| *model != ModelKind::Film).collect();
-    let names: Vec<&str> = MODELS
-        .iter()
-        .filter(|model| without_film.contains(&model.kind))
-        .map(|model| model.name)
-        .collect();
-    let models = match names.len() {
-        1 => format!("the model {} does", names[0]),
-        _ => format!("the models {} do", names.join(" and ")),
-    };
-    let missing: Vec<&str> = limits
-        .iter()
-        .filter(|limit| !names.is_empty() && FILM_ONLY.contains(&limit.measure))
-        .map(|limit| limit.measure.name())
-        .collect();
-    if !missing.is_empty() {
-        notes.push(format!(
-            "note: {models} not compute {}: {} cannot be judged",
-            missing.join(", "),
-            count(without_film.len(), "point")
-        ));
+    let points: Vec<ModelKind> =
+        study.points().iter().map(|point| point.job.scene.solver.model).collect();
+    for model in MODELS {
+        let points = points.iter().filter(|kind| **kind == model.kind).count();
+        let missing = limits.iter().map(|limit| limit.measure);
+        let missing = missing.filter(|measure| points > 0 && lacks(model.kind, *measure));
+        let missing: Vec<&str> = missing.map(ColumnId::name).collect();
+        if !missing.is_empty() {
+            notes.push(format!(
+                "note: the model {} does not compute {}: {} cannot be judged",
+                model.name,
+                missing.join(", "),
+                count(points, "point")
+            ));
+        }
     }
     notes
 }

@@ -11,8 +11,10 @@ use super::ColumnId;
 pub const HEADLINE: [ColumnId; 2] = [ColumnId::T90ZRimSinceRelease, ColumnId::PeakKineticEnergy];
 
 /// Noisy measures.
-pub const NOISY: [ColumnId; 14] = [
+pub const NOISY: [ColumnId; 16] = [
     ColumnId::PeakAcceleration,
+    ColumnId::PeakFilmSpeed,
+    ColumnId::PeakBaseForce,
     ColumnId::PeakVz,
     ColumnId::PeakDownwardVz,
     ColumnId::TPeakVz,
