@@ -19,6 +19,8 @@ pub struct AtLimit {
     pub mesh_error: Option<[f64; 2]>,
     /// Its change over the ranges of the assumed values, SI, where it is known.
     pub assumed: Option<f64>,
+    /// Its uncertainty by both, below and above it, SI, where it is known.
+    pub uncertainty: Option<[f64; 2]>,
     /// Whether it is met; `None` for a job that is not done, and where its measure has no value.
     pub judged: Option<Judged>,
     /// The unit in which the value is shown.
@@ -37,6 +39,7 @@ impl AtLimit {
             value: table.estimate(measure, row).cloned().unwrap_or(Value::Null),
             mesh_error,
             assumed,
+            uncertainty: table.uncertainty(measure, row),
             judged: table.judge(limit, row),
             shown: column.map_or_else(si, |column| column.shown.clone()),
         }

@@ -18,12 +18,11 @@ pub fn at_limit(one: &AtLimit, seeds: Option<[f64; 2]>) -> String {
         };
     };
     let (unit, difference) = (&one.shown, one.shown.of_difference());
-    let sides = one.mesh_error;
-    let error = sides.map(|sides| sides.map(|side| libm::hypot(side, one.assumed.unwrap_or(0.0))));
     let ends = seeds.map(|[least, largest]| (least, largest));
-    let mut text = format!("{name} {} {}", range::text(value, ends, error, unit), unit.symbol());
+    let mut text =
+        format!("{name} {} {}", range::text(value, ends, one.uncertainty, unit), unit.symbol());
     text.truncate(text.trim_end().len());
-    if let (Some([below, above]), Some(assumed)) = (sides, one.assumed) {
+    if let (Some([below, above]), Some(assumed)) = (one.mesh_error, one.assumed) {
         let [below, above, assumed] =
             [below, above, assumed].map(|part| brief_number(difference.number(part)));
         let mesh = if below == above { below } else { format!("−{below} +{above}") };

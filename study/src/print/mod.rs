@@ -114,8 +114,9 @@ pub fn shown_cells(table: &Table, column: &Column, rows: &[usize]) -> Vec<Value>
         }
         Value::Number(value) => {
             let ends = number(least, *row).zip(number(largest, *row));
-            let [below, above] = error.map_or([None; 2], |sides| sides.map(Some));
-            let sides = number(below, *row).zip(number(above, *row)).map(<[f64; 2]>::from);
+            let sides = error.and_then(|[below, above]| {
+                Some([number(Some(below), *row)?, number(Some(above), *row)?])
+            });
             match (ends, sides) {
                 (None, None) => Value::Number(column.shown.number(*value)),
                 (ends, error) => Value::Text(range::text(*value, ends, error, &column.shown)),

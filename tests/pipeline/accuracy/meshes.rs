@@ -105,6 +105,21 @@ fn pilots_give_an_error_outside_the_table_and_can_be_left_out() {
         points.iter().filter(|point| !pilots.contains(point)).map(error).collect();
     assert_eq!(others.len(), 2);
     assert!(others[0] > 0.05 && (others[0] / others[1] - 1.0).abs() < 1e-9, "{others:?}");
+    // The intervals of the others, laid about the value of a pilot on the mesh of the study, hold its extrapolated value.
+    let number =
+        |row: &Value, name: &str| row[name].as_f64().unwrap_or_else(|| panic!("{name}: {row}"));
+    let other = points.iter().find(|point| !pilots.contains(point)).unwrap();
+    let [below, above] = ["below", "above"].map(|side| {
+        number(other, &format!("peak_speed_error_{side}")) / number(other, "peak_speed")
+    });
+    for pilot in &pilots {
+        let of_study = |run: &&Value| {
+            run["subdivisions"] == 2 && run["mass_flow_rate"] == pilot["mass_flow_rate"]
+        };
+        let coarse = number(runs.iter().find(of_study).unwrap(), "peak_speed");
+        let ratio = number(pilot, "peak_speed") / coarse;
+        assert!((1.0 - below..=1.0 + above).contains(&ratio), "{ratio} {below} {above}");
+    }
     assert!(points.iter().any(|point| point["safety"] == "unsafe"), "{points:?}");
     let again = folder.run(&["run", "grid.json"]);
     assert!(said(&again).contains("all 14 jobs are finished"), "{}", said(&again));

@@ -158,14 +158,12 @@ pub fn measure(
     let z_rim = column("z_rim");
     let (first_peak, first_minimum) = first_rebound(z_rim);
     let peak_kinetic = peak(kinetic);
-    let [peak_speed, peak_acceleration] = motion::peaks(time, z_rim);
-    let [peak_base_force, _] = motion::peaks(time, column("support_impulse"));
     let largest = |values: &[f64]| peak(values).map(|(_, value)| value);
     let judged = reference.map(|reference| judge(history, reference, timeline, done));
     Measures {
-        peak_speed,
-        peak_acceleration,
-        peak_base_force,
+        peak_speed: motion::rate(time, z_rim),
+        peak_acceleration: motion::change_of_rate(time, z_rim),
+        peak_base_force: motion::rate(time, column("support_impulse")),
         peak_vz: peak_vz.map(|(_, value)| value),
         peak_downward_vz: vz.iter().map(|vz| -vz).reduce(f64::max),
         t_peak_vz: peak_vz.map(|(index, _)| time[index]),

@@ -109,10 +109,12 @@ fn a_difference_below_the_mesh_error_of_either_value_is_a_tie() {
         (3, 1.0, "done", Some(10.4)),
         (4, 1.0, "done", Some(10.4)),
     ]);
-    let errors = [0.1, 0.3, 0.5].map(Value::Number).into_iter().chain([Value::Null]);
-    let errors: Vec<Value> = errors.collect();
-    for name in ["peak_vz_error_below", "peak_vz_error_above"] {
-        table.columns.push(Column::plain(name, CellType::Number, errors.clone()));
+    // The side that faces away from the other value does not count.
+    for (name, errors) in
+        [("peak_vz_error_below", [0.05, 0.3, 0.5]), ("peak_vz_error_above", [0.1, 0.2, 0.2])]
+    {
+        let errors = errors.map(Value::Number).into_iter().chain([Value::Null]).collect();
+        table.columns.push(Column::plain(name, CellType::Number, errors));
     }
     let measure = table.column("peak_vz").unwrap();
     let tolerance = Tolerance::of(&table, &all(&table), measure, &[]);

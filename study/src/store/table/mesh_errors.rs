@@ -26,14 +26,13 @@ pub(super) fn columns(
         .map(|(point, cells)| RowErrors::of(&point.point.job.scene, cells, ranges))
         .collect();
     let number = |value: Option<f64>| value.map_or(Value::Null, Value::Number);
-    let side =
-        |row: &RowErrors, index: usize, side: usize| row.errors[index].map(|sides| sides[side]);
     let mut columns = Vec::new();
     for (index, promised) in PROMISED.iter().enumerate() {
         let kind = (CellType::Number, promised.measure.column().unit);
         for (part, (name, meaning)) in promised.columns().into_iter().enumerate() {
             let cells = all.iter().map(|row| {
-                number(if part < 2 { side(row, index, part) } else { row.assumed[index] })
+                let [below, above] = row.errors[index].map_or([None; 2], |sides| sides.map(Some));
+                number([below, above, row.assumed[index]][part])
             });
             columns.push(Column::new(name, kind, meaning, cells.collect()));
         }
