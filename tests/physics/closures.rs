@@ -2,13 +2,15 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use billow_solver::geometry::shapes::{disc, moved, ring_nodes, tube};
-use billow_solver::mechanics::forces::pressure::volume;
+use billow_solver::geometry::shapes::{disc, icosphere, moved, pseudo_random, ring_nodes, tube};
+use billow_solver::mechanics::forces::pressure::{add_closure, volume};
+use billow_solver::mechanics::forces::tangent;
 use billow_solver::models::film::capsule;
 use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::statics::solve;
+use billow_solver::system::TermStiffness;
 
-use crate::film_rig::support;
+use crate::film_rig::{film_forces, support};
 use crate::prelude::*;
 
 const RADIUS: f64 = 0.25;
@@ -99,6 +101,68 @@ fn statics_of_a_closed_vessel_leave_no_reaction() {
         let [force, moment] = [reaction.force.norm(), reaction.moment.norm()];
         assert!(force < 1e-9 * END_LOAD, "{warp} {lift}: {force} N");
         assert!(moment < 1e-9 * END_LOAD * LENGTH, "{warp} {lift}: {moment} N m");
+    }
+}
+
+/// Central differences of the forces of a pressure that is large beside the film's tension, along random moves.
+#[test]
+fn the_stiffness_of_a_closure_is_the_slope_of_its_forces() {
+    for (warp, lift) in VESSELS {
+        let shell = vessel(warp, lift);
+        let model = FilmModel::supported(&Film::PAPER_ELASTIC, &shell, |_| false).unwrap();
+        let pressure = 1e7;
+        let system = FilmSystem::free(model, PressureLoad::Overpressure(pressure));
+        let model = &system.model;
+        let with = |moves: &[Vector3<f64>], by: f64| {
+            let taut = shell.positions.iter().zip(moves).map(|(x, u)| x * 1.01 + u * by);
+            let mut positions = Field::of(&taut.collect::<Vec<_>>());
+            model.closure_nodes.place(&mut positions);
+            positions
+        };
+        let moves = pseudo_random(shell.positions.len(), 7);
+        let moves: Vec<Vector3<f64>> = moves
+            .iter()
+            .zip(&model.mass)
+            .map(|(u, mass)| if *mass > 0.0 { *u } else { u * 0.0 })
+            .collect();
+        let forces = |by: f64| {
+            let positions = with(&moves, by);
+            let mut nodes = film_forces(model, &positions);
+            let _ = add_closure(model, &positions, &mut nodes);
+            let of_node = |node| system.node_force(&nodes, pressure, node);
+            Field::of(&(0..model.nodes()).map(of_node).collect::<Vec<_>>())
+        };
+        let step = 1e-7;
+        let [before, after] = [-step, step].map(forces);
+        let positions = with(&moves, 0.0);
+        let mut products = Field::zeros(model.nodes());
+        let (faces, stiffness): (Vec<_>, Vec<_>) =
+            system.face_stiffness(&[], &positions, pressure).unzip();
+        tangent::add_products(&faces, &stiffness, &Field::of(&moves), &mut products);
+        let mut terms = TermStiffness::new(&system);
+        terms.prepare(&system, &positions, pressure, &[]);
+        terms.add_product(&system, &Field::of(&moves), &mut products);
+        let of_film = (0..model.nodes()).filter(|node| model.mass[*node] > 0.0);
+        for node in of_film {
+            let slope = (before.get(node) - after.get(node)) / (2.0 * step);
+            let error = (products.get(node) - slope).norm();
+            assert!(error < 1e-6 * pressure, "{warp} {lift}, node {node}: {error} N/m");
+        }
+    }
+}
+
+/// Nothing holds these vessels: rigid motions have no stiffness, and at some pressures rounding is all that remains.
+#[test]
+fn a_free_vessel_has_an_equilibrium_at_any_pressure() {
+    let shells = [vessel(0.0, 0.0), vessel(0.04, 0.05), icosphere(2, 0.5)];
+    for shell in shells {
+        for pressure in [1.0, 30.0, 1e3, 5e3, 3e4] {
+            let film = free_film(shell.clone(), Film::PAPER_ELASTIC);
+            let scene = FilmScene { filling: Filling::Pressure(pressure), ..film };
+            let state = solve(&scene, None, &mut || true);
+            let state = state.unwrap_or_else(|error| panic!("{pressure} Pa: {error}"));
+            assert!(state.iterations < 200, "{pressure} Pa: {} steps", state.iterations);
+        }
     }
 }
 

@@ -157,7 +157,7 @@ fn the_stiffness_is_minus_the_slope_of_the_forces() {
         }
         system.pair_stiffness(at_now, &workspace, &mut add);
         let mut terms = TermStiffness::new(system);
-        terms.prepare(system, &positions, &state.yielded);
+        terms.prepare(system, &positions, overpressure, &state.yielded);
         let mut of_terms = Field::zeros(directions.len());
         terms.add_product(system, &Field::of(&directions), &mut of_terms);
         for (sum, of_terms) in product.iter_mut().zip(of_terms.iter()) {

@@ -52,36 +52,37 @@ pub trait NormalSums {
 /// All vertices of closing faces that follow a rim.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ClosureNodes {
-    patches: Vec<Patch>,
+    pub(super) patches: Vec<Patch>,
     /// Faces of the fans on walls: the pressure on them is not part of a reaction.
     wall_faces: Vec<[u32; 3]>,
 }
 
 /// Connected closing faces with vertices that belong to no film.
 #[derive(Debug, Clone, PartialEq)]
-struct Patch {
-    rim: Vec<RimNode>,
+pub(super) struct Patch {
+    pub(super) rim: Vec<RimNode>,
     /// Directed edges of the rim, as indices into `rim`; closed loops.
-    edges: Vec<[usize; 2]>,
-    followers: Vec<Follower>,
+    pub(super) edges: Vec<[usize; 2]>,
+    pub(super) followers: Vec<Follower>,
+    pub(super) faces: Vec<[u32; 3]>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct RimNode {
-    node: u32,
+pub(super) struct RimNode {
+    pub(super) node: u32,
     /// w.
-    weight: f64,
+    pub(super) weight: f64,
     /// q: its initial position from the mean of the rim, m.
-    offset: Vector3<f64>,
+    pub(super) offset: Vector3<f64>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Follower {
-    node: u32,
+pub(super) struct Follower {
+    pub(super) node: u32,
     /// c, 1/m².
-    affine: Vector3<f64>,
+    pub(super) affine: Vector3<f64>,
     /// b, 1/m.
-    normal: f64,
+    pub(super) normal: f64,
 }
 
 impl ClosureNodes {
@@ -107,6 +108,12 @@ impl ClosureNodes {
     /// Whether no vertex follows a rim.
     pub fn is_empty(&self) -> bool {
         self.patches.is_empty()
+    }
+
+    /// Nodes of the rim of each patch.
+    pub fn rims(&self) -> Vec<Vec<u32>> {
+        let rim = |patch: &Patch| patch.rim.iter().map(|rim| rim.node).collect();
+        self.patches.iter().map(rim).collect()
     }
 
     /// Moves the vertices to their places on the rims.
@@ -265,7 +272,8 @@ impl Patch {
             weight: length / total,
             offset: Vector3::zeros(),
         });
-        let mut patch = Self { rim: rim.collect(), edges, followers: Vec::new() };
+        let faces = faces.to_vec();
+        let mut patch = Self { rim: rim.collect(), edges, followers: Vec::new(), faces };
         let mean = patch.map(position).mean;
         for rim in &mut patch.rim {
             rim.offset = position(rim.node) - mean;

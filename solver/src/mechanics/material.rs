@@ -25,6 +25,9 @@ use crate::platform::fault_injection::{Fault, Term};
 use crate::platform::simd::{Lanes, Wide};
 use crate::scene::Film;
 
+/// Upper bound of S1/E. Chosen: no polymer film is linear in Green strain at three times its length.
+pub const MAX_STRESS_RATIO: f64 = 4.0;
+
 /// A symmetric tensor in the plane of the developed film.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PlaneTensor {

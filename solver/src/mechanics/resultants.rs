@@ -59,6 +59,30 @@ pub fn resultants(model: &FilmModel, positions: &Field, element: usize) -> Resul
     Resultants { regime: model.material.regime(strain), principal, nominal, cauchy }
 }
 
+/// Largest principal second Piola-Kirchhoff stress of the film at these positions (m), Pa; 0 of slack film.
+pub fn largest_stress(model: &FilmModel, positions: &Field) -> f64 {
+    let of = |element: usize| {
+        resultants(model, positions, element).principal[0] / thickness(model, element)
+    };
+    (0..model.elements()).map(of).fold(0.0, f64::max)
+}
+
+/// Smallest and largest principal stretch of the film at these positions (m), with their elements.
+pub fn stretches(model: &FilmModel, positions: &Field) -> [(f64, usize); 2] {
+    let mut found = [(f64::INFINITY, 0), (0.0, 0)];
+    for element in 0..model.elements() {
+        let (first, second) = strain(model, positions, element).principal();
+        let stretch = |strain: f64| (1.0 + 2.0 * strain).max(0.0).sqrt();
+        if stretch(second) < found[0].0 {
+            found[0] = (stretch(second), element);
+        }
+        if stretch(first) > found[1].0 {
+            found[1] = (stretch(first), element);
+        }
+    }
+    found
+}
+
 /// Thickness of an element in its stress-free reference, m.
 pub fn thickness(model: &FilmModel, element: usize) -> f64 {
     let [a, b, c, d] = model.inverse_shape.each_ref().map(|column| column[element]);

@@ -53,7 +53,7 @@ impl Equations {
         self.stiffness.clear();
         let faces = film.face_stiffness(&[], positions, overpressure);
         self.stiffness.extend(faces.map(|(_, stiffness)| stiffness));
-        self.terms.prepare(film, positions, &film.unyielded());
+        self.terms.prepare(film, positions, overpressure, &film.unyielded());
     }
 
     /// Factorises the stiffness with the shift μ ω² M. `false` if the matrix is not positive definite.

@@ -3,18 +3,20 @@
 //! ```text
 //! K = membrane + pressure on faces                                   given face by face
 //!   + contact + plates                                               given as 3 × 3 blocks
-//!   + further energies                                               given patch by patch
+//!   + further energies + pressure on vertices without film           given patch by patch
 //!   + (γ p/V) ∂V/∂x (∂V/∂x)ᵀ                                         gas: of rank one, given apart
 //! ```
 //!
 //! The pressure on a face is given with its symmetric part; the rest cancels over a closed surface
-//! ([`crate::mechanics::forces::tangent`]). A block of a vertex without film belongs to its rim.
+//! ([`crate::mechanics::forces::tangent`]). A block of a vertex without film belongs to its rim
+//! ([`crate::mechanics::forces::closure`]).
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::{Evaluation, FilmSystem, PressureLoad, Workspace};
 use crate::geometry::field::Field;
 use crate::mechanics::energy_term::{Blocks, Prepared};
+use crate::mechanics::forces::closure;
 use crate::mechanics::forces::membrane::CreepStrain;
 use crate::mechanics::forces::tangent::{self, Stiffness};
 use crate::scene::HeatTransfer;
@@ -28,10 +30,10 @@ pub struct GasStiffness {
     pub gradient: Field,
 }
 
-/// The stiffness of the further energies at some positions, patch by patch.
+/// The stiffness of the further energies and of closing faces at some positions, patch by patch.
 #[derive(Debug, Clone)]
 pub struct TermStiffness {
-    /// Nodes of each patch, term by term.
+    /// Nodes of each patch, term by term; then the rims of the closing faces.
     pub nodes: Vec<Vec<u32>>,
     /// Matrix of each patch, N/m.
     pub patches: Vec<DMatrix<f64>>,
@@ -42,19 +44,26 @@ pub struct TermStiffness {
 }
 
 impl TermStiffness {
-    /// Zero stiffness of the further energies of a system.
+    /// Zero stiffness of the patches of a system.
     pub fn new(system: &FilmSystem) -> Self {
         let of_terms: Vec<_> = system.energy_terms.iter().map(|term| term.patches()).collect();
         let counts = of_terms.iter().map(Vec::len).collect();
-        let nodes: Vec<Vec<u32>> = of_terms.into_iter().flatten().collect();
+        let mut nodes: Vec<Vec<u32>> = of_terms.into_iter().flatten().collect();
+        nodes.extend(system.model.closure_nodes.rims());
         let zeros = |nodes: &Vec<u32>| DMatrix::zeros(3 * nodes.len(), 3 * nodes.len());
         let patches = nodes.iter().map(zeros).collect();
         Self { nodes, patches, counts, positions: Field::zeros(0) }
     }
 
-    /// Computes it at these positions (m), with what the terms have yielded.
-    pub fn prepare(&mut self, system: &FilmSystem, positions: &Field, yielded: &[Vec<f64>]) {
-        if self.counts.is_empty() {
+    /// Computes it at these positions (m) and this overpressure (Pa), with what the terms have yielded.
+    pub fn prepare(
+        &mut self,
+        system: &FilmSystem,
+        positions: &Field,
+        overpressure: f64,
+        yielded: &[Vec<f64>],
+    ) {
+        if self.nodes.is_empty() {
             return;
         }
         self.positions.clone_from(positions);
@@ -64,6 +73,7 @@ impl TermStiffness {
             term.stiffness(positions, yielded, of_term);
             rest = others;
         }
+        closure::stiffness(&system.model.closure_nodes, positions, overpressure, rest);
     }
 
     /// Adds K u, N, of displacements u (m) to `products`.
@@ -73,6 +83,14 @@ impl TermStiffness {
             let (patches, others) = rest.split_at(*count);
             term.add_product(&Prepared { positions, patches }, displacements, products);
             rest = others;
+        }
+        for (patch, nodes) in rest.iter().zip(&self.nodes[self.nodes.len() - rest.len()..]) {
+            let of_node = |row: usize| displacements.get(nodes[row / 3] as usize)[row % 3];
+            let product = patch * DVector::from_fn(3 * nodes.len(), |row, _| of_node(row));
+            for (index, node) in nodes.iter().enumerate() {
+                let node = *node as usize;
+                products.set(node, products.get(node) + product.fixed_rows::<3>(3 * index));
+            }
         }
     }
 }

@@ -100,7 +100,7 @@ impl LinearSystem {
         for ((_, stiffness), (face, corners)) in faces.zip(&self.places) {
             add_permuted(&mut self.stiffness[*face], &stiffness, corners);
         }
-        self.terms.prepare(system, positions, &state.yielded);
+        self.terms.prepare(system, positions, overpressure, &state.yielded);
         let pairs = &mut self.pairs;
         pairs.clear();
         system.pair_stiffness((positions, time), workspace, &mut |nodes, block| {

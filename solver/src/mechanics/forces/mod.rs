@@ -3,6 +3,7 @@
 //! One loop over the elements adds their forces to the nodes, in the order of the elements: the same
 //! state gives the same bits. The loop allocates nothing.
 
+pub mod closure;
 pub mod damping;
 pub mod membrane;
 pub mod pressure;
