@@ -1,5 +1,7 @@
 //! Scene files: meshes of other programs, and errors of invalid scenes, flags and files.
 
+use std::fmt::Write as _;
+
 use billow_study::input::schema::scene_schema;
 use serde_json::{Value, json};
 
@@ -112,4 +114,146 @@ fn keys_without_effect_are_noted() {
     let notes = summary["notes"].to_string();
     assert!(notes.contains("the one nearest to [200.0, 0.0, 500.0] m is"), "{notes}");
     assert!(notes.contains("release_time has no effect: the film stays packed"), "{notes}");
+}
+
+/// A box from 0 to these lengths, its faces outward or inward, with its lower corner here.
+fn block(lengths: [f64; 3], at: [f64; 3], outward: bool, first: u32) -> String {
+    let mut text = String::new();
+    for corner in 0..8_u32 {
+        let x = [0, 1, 2].map(|k| at[k] + if corner >> k & 1 == 1 { lengths[k] } else { 0.0 });
+        writeln!(text, "v {} {} {}", x[0], x[1], x[2]).unwrap();
+    }
+    for face in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]]
+    {
+        let mut corners = face.map(|corner| (corner + first).to_string());
+        if !outward {
+            corners.reverse();
+        }
+        writeln!(text, "f {}", corners.join(" ")).unwrap();
+    }
+    text
+}
+
+#[test]
+fn a_face_that_is_not_convex_may_be_listed_from_any_corner() {
+    let corners = [[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]];
+    let mut volumes = Vec::new();
+    for first in 0..6 {
+        let mut text = String::new();
+        for z in [0.0, 0.5] {
+            for [x, y] in corners {
+                writeln!(text, "v {x} {y} {z}").unwrap();
+            }
+        }
+        let around: Vec<usize> = (0..6).map(|k| (k + first) % 6).collect();
+        let list = |of: &dyn Fn(usize) -> usize| {
+            around.iter().map(|k| of(*k).to_string()).collect::<Vec<_>>().join(" ")
+        };
+        writeln!(text, "f {}\nf {}", list(&|k| 6 - k), list(&|k| 7 + k)).unwrap();
+        for k in 0..6 {
+            let next = (k + 1) % 6;
+            writeln!(text, "f {} {} {} {}", k + 1, next + 1, next + 7, k + 7).unwrap();
+        }
+        let scene = cube(&json!({"positions": "l.obj"}), &json!({"initial_pressure": "0.1 Pa"}));
+        volumes.push(number(&solved(&scene, &[("l.obj", &text)]), "/volume"));
+    }
+    let first = volumes[0];
+    assert!((first / 1.5 - 1.0).abs() < 0.02, "{volumes:?}");
+    assert!(volumes.iter().all(|volume| (volume / first - 1.0).abs() < 1e-9), "{volumes:?}");
+    let crossed = "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1.1 0\nf 1 2 3 4\n";
+    let scene = cube(&json!({"positions": "x.obj"}), &json!({"pressure": 1}));
+    refused(&scene, &[("x.obj", crossed)], &["line 5", "crosses itself"]);
+}
+
+/// A cube whose lid has vertices of its own, this far above its rim.
+fn with_lid(gap: f64) -> String {
+    let open = CUBE.lines().take(15).fold(String::new(), |text, line| text + line + "\n");
+    let lid = [[0, 0], [1, 0], [1, 1], [0, 1]];
+    let vertices = lid.map(|[x, y]| format!("v {x} {y} {}\n", 1.0 + gap)).concat();
+    open + &vertices + "f -4 -3 -2 -1\n"
+}
+
+#[test]
+fn free_edges_near_each_other_are_refused_under_any_pressure() {
+    for gap in [0.0, 1e-9, 1e-6, 1e-4, 5e-3] {
+        for gas in [json!({"initial_pressure": 1}), json!({"pressure": 1})] {
+            let mut scene = cube(&json!({"positions": "lid.obj"}), &gas);
+            let file = with_lid(gap);
+            let files = [("lid.obj", file.as_str())];
+            refused(&scene, &files, &["leaks", "counted from 1", "mesh.weld"]);
+            scene["mesh"]["weld"] = json!(1.2 * gap);
+            near_one(number(&solved(&scene, &files), "/volume"));
+        }
+    }
+    // A vertex on the edge of a face on the other side.
+    let split = with_lid(0.0).replace("f -4 -3 -2 -1", "v 0.5 0 1\nf -5 -1 -4 -3 -2");
+    let scene = cube(&json!({"positions": "lid.obj", "weld": 0}), &json!({"pressure": 1}));
+    refused(&scene, &[("lid.obj", &split)], &["leaks", "and the edge between"]);
+}
+
+fn near_one(volume: f64) {
+    assert!((volume - 1.0).abs() < 0.02, "{volume}");
+}
+
+#[test]
+fn every_piece_has_its_sense_and_cavities_theirs() {
+    let outer = block([1.0; 3], [0.0; 3], true, 1);
+    let gas = json!({"initial_pressure": "0.1 Pa"});
+    let scene = cube(&json!({"positions": "two.obj"}), &gas);
+    let beside = |outward| outer.clone() + &block([0.5; 3], [2.0, 0.0, 0.0], outward, 9);
+    near_one(number(&solved(&scene, &[("two.obj", &beside(true))]), "/volume") / 1.125);
+    let texts = ["piece 2 of 2", "OBJ vertex 10", "wound inward", "flip the normals of this piece"];
+    refused(&scene, &[("two.obj", &beside(false))], &texts);
+    let inside = |outward| outer.clone() + &block([0.5; 3], [0.25; 3], outward, 9);
+    let cavity = solved(&scene, &[("two.obj", &inside(false))]);
+    near_one(number(&cavity, "/volume") / 0.875);
+    assert!(!cavity["notes"].to_string().contains("count twice"), "{cavity}");
+    let twice = solved(&scene, &[("two.obj", &inside(true))]);
+    assert!(twice["notes"].to_string().contains("count twice"), "{twice}");
+}
+
+#[test]
+fn size_stretch_place_and_step_are_judged_before_a_run() {
+    let still = |mesh: Value, pressure: f64| {
+        let mut scene = cube(&mesh, &json!({"pressure": pressure}));
+        scene["solver"] = json!({"static": true});
+        scene
+    };
+    let far = |by: f64| block([1.0; 3], [by, -2.0 * by, 3.0], true, 1);
+    let solve_at = |by: f64| {
+        let file = far(by);
+        let scene = still(json!({"positions": "far.obj"}), 1.0);
+        number(&solved(&scene, &[("far.obj", &file)]), "/volume")
+    };
+    let home = solve_at(0.0);
+    for by in [1e3, 1e7] {
+        assert!((solve_at(by) / home - 1.0).abs() < 1e-6, "{by}: {} {home}", solve_at(by));
+    }
+    // Metres for millimetres: the stress grows with the size.
+    let large = block([1000.0; 3], [0.0; 3], true, 1);
+    let large = [("large.obj", large.as_str())];
+    let folder = scene_folder(&still(json!({"positions": "large.obj"}), 1e3), &large);
+    let output = solve(folder.path(), &["scene.json"], "");
+    let text = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(text.contains("overstretched") && text.contains("mesh.scale"), "{text}");
+    // A reference in millimetres, and one that is too small.
+    for (scale, text) in [(1000.0, "slack everywhere"), (0.8, "stretched to 1.25")] {
+        let reference = block([scale; 3], [0.0; 3], true, 1);
+        let mesh = json!({"positions": "cube.obj", "reference": "flat.obj"});
+        let cube_file = block([1.0; 3], [0.0; 3], true, 1);
+        let files = [("cube.obj", cube_file.as_str()), ("flat.obj", reference.as_str())];
+        let summary = solved(&still(mesh, 1.0), &files);
+        assert!(summary["notes"].to_string().contains(text), "{summary}");
+        assert!((number(&summary, "/stretch/start/1") * scale - 1.0).abs() < 1e-9, "{summary}");
+    }
+    // A sliver needs more steps than there are.
+    let sliver = block([1.0; 3], [0.0; 3], true, 1)
+        .replace("f 5 6 8 7", "v 0.5 1e-9 1\nf 5 6 9\nf 6 8 7 5 9");
+    let scene = cube(&json!({"positions": "sliver.obj"}), &json!({"initial_pressure": 1}));
+    refused(
+        &scene,
+        &[("sliver.obj", &sliver)],
+        &["solver.step_limit", "the face on line", "OBJ vertices 5 6 9"],
+    );
 }

@@ -149,7 +149,9 @@ fn write_files(args: &Args, scene: &SceneFile, solved: &Solved) -> Result<()> {
         let numbering = &scene.numbering;
         let vertices = numbering.node.iter().zip(&numbering.surface.vertices);
         let vertices: Vec<_> = vertices
-            .map(|(node, start)| node.map_or(*start, |node| positions.get(node as usize)))
+            .map(|(node, start)| {
+                node.map_or(*start, |node| positions.get(node as usize)) + numbering.origin
+            })
             .collect();
         let title = format!("billow solve {}: {}", args.scene.display(), solved.status);
         write(path, obj::surface(&numbering.surface, &vertices, &title).as_bytes())?;

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use billow_solver::integrators::StoredFilm;
+use billow_solver::mechanics::material::MAX_STRESS_RATIO;
+use billow_solver::mechanics::resultants::largest_stress;
 use billow_solver::models::film::FilmRun;
 use billow_solver::models::run::{Answer, Model, Observer, Pause, Progress, Run};
 use billow_solver::output::checkpoint::{Checkpoint, CheckpointError};
@@ -82,8 +84,14 @@ fn equilibrium(scene: &SceneFile, stop: &Stop) -> Result<(Status, Ended)> {
         Ok(solution) => {
             // Closed film turned inside out has an equilibrium too, but not the wanted one.
             let inside_out = scene.film.shell.is_closed() && solution.volume <= 0.0;
-            let status =
-                if inside_out { Status::Failed(FailureKind::InvertedVolume) } else { Status::Done };
+            let stress = largest_stress(&solution.model, &solution.positions);
+            let status = if inside_out {
+                Status::Failed(FailureKind::InvertedVolume)
+            } else if stress > MAX_STRESS_RATIO * solution.model.material.youngs_modulus {
+                Status::Failed(FailureKind::Overstretched)
+            } else {
+                Status::Done
+            };
             Ok((status, Ended::Equilibrium(Box::new(solution))))
         }
         Err(StaticError::NoState(failure)) => match (failure.kind, stop.requested()) {

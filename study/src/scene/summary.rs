@@ -6,10 +6,10 @@ use billow_solver::geometry::field::Field;
 use billow_solver::geometry::topology::Topology;
 use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::mechanics::material::Regime;
-use billow_solver::mechanics::resultants::{resultants, thickness};
+use billow_solver::mechanics::resultants::{largest_stress, resultants, stretches, thickness};
 use billow_solver::models::film::{FILM_STRESS_99, FilmRun};
 use billow_solver::models::run::FILM_SPEED;
-use billow_solver::output::outcome::{Deployment, Stop};
+use billow_solver::output::outcome::{Deployment, FailureKind, Stop};
 use billow_solver::scene::film_scene::Filling;
 use billow_solver::statics::StaticSolution;
 use billow_solver::system::PressureLoad;
@@ -25,7 +25,7 @@ use crate::scene::solve::{Ended, Solved};
 pub fn summary(scene: &SceneFile, solved: &Solved) -> Json {
     let mut summary = match &solved.end {
         Ended::Motion(motion) => in_motion(scene, &motion.0, &motion.1),
-        Ended::Equilibrium(solution) => in_equilibrium(scene, solution),
+        Ended::Equilibrium(solution) => in_equilibrium(scene, solution, solved.status),
         Ended::NoEquilibrium(failure) => {
             let stop = json!({
                 "kind": Status::NoEquilibrium.name(),
@@ -79,6 +79,10 @@ fn film(scene: &SceneFile, model: &FilmModel, positions: &Field) -> Json {
         "resultants": elements.collect::<Map<_, _>>(),
         "extents": extents(model, positions),
         "elements": model.elements(),
+        "stretch": {
+            "start": stretches(model, &Field::of(&scene.film.shell.positions)).map(|(stretch, _)| stretch),
+            "end": stretches(model, positions).map(|(stretch, _)| stretch),
+        },
     })
 }
 
@@ -183,7 +187,7 @@ fn contact(run: &FilmRun, deployment: &Deployment) -> Json {
     })
 }
 
-fn in_equilibrium(scene: &SceneFile, solution: &StaticSolution) -> Json {
+fn in_equilibrium(scene: &SceneFile, solution: &StaticSolution, status: Status) -> Json {
     let mut summary = film(scene, &solution.model, &solution.positions);
     let pressure = match scene.film.filling {
         Filling::Pressure(pressure) => pressure,
@@ -194,14 +198,20 @@ fn in_equilibrium(scene: &SceneFile, solution: &StaticSolution) -> Json {
         .iter()
         .map(|support| (support.name.clone(), reaction([support.force, support.moment])))
         .collect::<Map<_, _>>();
-    let stress = (0..solution.model.elements()).fold(0.0_f64, |largest, element| {
-        let forces = resultants(&solution.model, &solution.positions, element);
-        largest.max(forces.principal[0] / thickness(&solution.model, element))
-    });
     let topology = Topology::new(solution.model.nodes(), &solution.model.triangles);
-    if scene.film.shell.is_closed() && solution.volume <= 0.0 {
-        let location = format!("the film is turned inside out: V {:.6} m3", solution.volume);
-        summary["stop"] = json!({"kind": "inverted_volume", "time": null, "location": location});
+    let stop = match status {
+        Status::Failed(FailureKind::InvertedVolume) => {
+            Some(format!("the film is turned inside out: V {:.6} m3", solution.volume))
+        }
+        Status::Failed(FailureKind::Overstretched) => {
+            let [_, (stretch, element)] = stretches(&solution.model, &solution.positions);
+            let place = scene.numbering.place(element);
+            Some(format!("{place}: stretched to {stretch:.2} times its length"))
+        }
+        _ => None,
+    };
+    if let Some(location) = stop {
+        summary["stop"] = json!({"kind": status.name(), "time": null, "location": location});
     }
     let more = json!({
         "volume": solution.volume,
@@ -216,7 +226,7 @@ fn in_equilibrium(scene: &SceneFile, solution: &StaticSolution) -> Json {
             "kinetic": 0.0, "strain": solution.strain_energy, "potential": solution.potential_energy,
         },
         "ledger": {"strain": solution.strain_energy, "residual": solution.residual},
-        "film_stress": stress,
+        "film_stress": largest_stress(&solution.model, &solution.positions),
         "steps": solution.iterations,
         "end_time": null,
     });

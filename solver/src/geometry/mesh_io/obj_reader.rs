@@ -3,7 +3,7 @@
 //! Accepted: `v x y z` (a weight or colour after them is ignored); `f` with three or more corners written
 //! `7`, `7/1`, `7//2` or `7/1/2`, 1-based or negative (counted back from the last vertex so far); names
 //! of `g` and `o`; comments; lines continued after a `\`; any line ending. Textures, normals,
-//! materials, lines and points are ignored. A polygon becomes a triangle fan from its first corner.
+//! materials, lines and points are ignored.
 
 use std::borrow::Cow;
 
@@ -29,13 +29,6 @@ pub struct Face {
     pub names: usize,
     /// Line of the file, 1-based.
     pub line: usize,
-}
-
-impl Face {
-    /// The triangles of its fan, as indices into [`Self::corners`].
-    pub fn fan(&self) -> impl Iterator<Item = [usize; 3]> {
-        (1..self.corners.len() - 1).map(|corner| [0, corner, corner + 1])
-    }
 }
 
 /// Why a text is not a valid surface.
@@ -186,8 +179,6 @@ mod tests {
         assert_eq!(surface.vertices[2], Vector3::new(1.0, 1.0, -0.5));
         let corners: Vec<&[u32]> = surface.faces.iter().map(|face| &face.corners[..]).collect();
         assert_eq!(corners, [&[0, 1, 2][..], &[0, 2, 3], &[0, 1, 2, 3]]);
-        let fan: Vec<_> = surface.faces[2].fan().collect();
-        assert_eq!(fan, [[0, 1, 2], [0, 2, 3]]);
         assert_eq!(surface.faces[0].line, 13);
         let names = |face: usize| surface.names[surface.faces[face].names].clone();
         assert_eq!(names(0), ["Bag one"]);
@@ -239,7 +230,7 @@ mod tests {
             if let Ok(surface) = read(&format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{text}")) {
                 let vertices = surface.vertices.len();
                 for face in &surface.faces {
-                    prop_assert!(face.fan().count() + 2 == face.corners.len());
+                    prop_assert!(face.corners.len() >= 3);
                     prop_assert!(face.corners.iter().all(|c| (*c as usize) < vertices));
                 }
             }

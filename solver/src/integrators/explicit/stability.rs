@@ -12,7 +12,8 @@
 use super::motion::StepInterval;
 use super::{Explicit, FilmModel, failure};
 use crate::integrators::interface::Integrator as _;
-use crate::mechanics::forces::membrane::strain;
+use crate::mechanics::material::MAX_STRESS_RATIO;
+use crate::mechanics::resultants::stretches;
 use crate::output::audit::MAX_LEDGER_RESIDUAL;
 use crate::output::outcome::{AuditKind, Failure, FailureKind};
 use crate::system::{FilmState, FilmSystem};
@@ -25,8 +26,6 @@ const MIN_STRETCHED: f64 = 0.25;
 /// Step over the longest step at which an interval is planned again. Chosen: a growing stretch then does not
 /// plan every step.
 const MAX_STEP_RATIO: f64 = 1.1;
-/// Upper bound of S1/E. Chosen: no polymer film is linear in Green strain at three times its length.
-const MAX_STRESS_RATIO: f64 = 4.0;
 
 /// Whether a displacement (m) in one step is larger than the film, or not finite.
 pub(super) fn moves_too_far(model: &FilmModel, displacement: f64) -> bool {
@@ -149,11 +148,7 @@ impl Explicit {
         if self.stress_ratio(system) <= MAX_STRESS_RATIO {
             return Ok(());
         }
-        let first = |element: usize| strain(&system.model, &state.positions, element).principal().0;
-        let element = (0..system.model.elements()).fold(0, |largest, element| {
-            if first(element) > first(largest) { element } else { largest }
-        });
-        let stretch = (1.0 + 2.0 * first(element)).sqrt();
+        let [_, (stretch, element)] = stretches(&system.model, &state.positions);
         let balanced = self.energy_balances(system, state, MAX_LEDGER_RESIDUAL);
         let node = system.model.triangles[element][0];
         let place =

@@ -45,7 +45,7 @@ pub static SCENE_WINDOW_KEYS: &[Key] = &[
 pub static MESH_KEYS: &[Key] = &[
     key("positions", KeyKind::Text, Required, "\"bag.obj\"",
         "OBJ file of the film at the start, relative to the scene file: v and f lines, faces \
-         counter-clockwise seen from outside; polygons are cut into fans."),
+         counter-clockwise seen from outside; polygons are cut into triangles."),
     key("scale", above(Dimension::Number, 0.0, 1e9), Number(1.0), "0.001",
         "Length of one unit of the OBJ files, m."),
     key("weld", likely(from(Dimension::Length, 0.0, 1.0), 0.0, 0.1), Absent("nothing is welded"), "\"1 um\"",
@@ -174,7 +174,7 @@ pub(crate) const OBJECT_MEANINGS: &[(&str, &str)] = &[
     ),
     (
         "outputs.elements",
-        "Triangles (faces cut into fans) recorded in history and summary: by number, 0 for the \
+        "Triangles (of faces) recorded in history and summary: by number, 0 for the \
          first of the file, or the one nearest to a position; named by an object.",
     ),
 ];

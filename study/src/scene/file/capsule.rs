@@ -7,6 +7,7 @@ use billow_solver::geometry::mesh_io::obj_reader::{Face, Surface};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::models::film::Rings;
 use billow_solver::models::film::capsule::{imperfect, part_nodes};
+use nalgebra::Vector3;
 
 use super::memory::Needs;
 use super::shape::{Numbering, Shape};
@@ -127,5 +128,6 @@ fn numbering(mesh: Mesh) -> Numbering {
         surface,
         node: (0..nodes).map(Some).collect(),
         element: (0..elements).map(Some).collect(),
+        origin: Vector3::zeros(),
     }
 }

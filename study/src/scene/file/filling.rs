@@ -1,16 +1,13 @@
 //! `gas`: no pressure, a fixed overpressure, or gas in a closed volume.
 
-use std::collections::BTreeMap;
-
 use billow_solver::geometry::field::Field;
 use billow_solver::mechanics::supports::Supports;
 use billow_solver::scene::film_scene::Filling;
 use billow_solver::scene::film_support::FilmSupport;
 use billow_solver::scene::{GasSupply, HeatTransfer, InflowWindow};
-use nalgebra::Vector3;
 
-use super::is_static;
 use super::shape::Shape;
+use super::{components, is_static, seams};
 use crate::input::json::Json;
 use crate::input::keys::SCENE_WINDOW_KEYS;
 use crate::input::object::Object;
@@ -42,6 +39,10 @@ pub(super) fn read(
                 "pressure alone, or a gas without it",
             ));
         }
+        if pressure != 0.0 {
+            seams::check(shape, source)?;
+            components::check(shape, notes, source)?;
+        }
         // Flat film encloses no volume, and a pressure may separate its layers.
         if shape.shell.is_closed() && !encloses_nothing(shape) {
             check_outward(shape, source)?;
@@ -56,7 +57,9 @@ pub(super) fn read(
             "{\"pressure\": \"1 kPa\"}",
         ));
     }
-    close(shape, supports, notes, source)?;
+    seams::check(shape, source)?;
+    components::check(shape, notes, source)?;
+    close(shape, supports, notes);
     let volume = check_outward(shape, source)?;
     let windows = windows(gas.get("windows"), settings, source)?;
     let mut supply = settings.gas(0.0, windows, source)?;
@@ -192,41 +195,11 @@ fn check_outward(shape: &Shape, source: &Source) -> Result<f64, InputError> {
         ))
 }
 
-/// Closes an open film by fans. Film that is open only because its seams are not joined is an error.
-fn close(
-    shape: &mut Shape,
-    supports: &[FilmSupport],
-    notes: &mut Vec<String>,
-    source: &Source,
-) -> Result<(), InputError> {
+/// Closes an open film by fans.
+fn close(shape: &mut Shape, supports: &[FilmSupport], notes: &mut Vec<String>) {
     let loops = shape.shell.boundary();
     if loops.is_empty() {
-        return Ok(());
-    }
-    let mut seen: BTreeMap<[u64; 3], u32> = BTreeMap::new();
-    for node in loops.iter().flatten() {
-        let position: Vector3<f64> = shape.shell.positions[*node as usize];
-        // −0 and 0 are the same coordinate.
-        let bits: [u64; 3] = (position.add_scalar(0.0)).map(f64::to_bits).into();
-        match seen.insert(bits, *node) {
-            Some(other) if other != *node => {
-                let vertex = |node| shape.numbering.vertex(node).map_or(0, |vertex| vertex + 1);
-                return Err(source.error(
-                    "mesh.positions",
-                    Json::Text(shape.file.clone()),
-                    format!(
-                        "leaks: its free edges pass through {:?} m twice, at OBJ vertices {} and {} \
-                         (counted from 1), which are not joined",
-                        <[f64; 3]>::from(position),
-                        vertex(other),
-                        vertex(*node),
-                    ),
-                    "film with its seams joined where there is gas inside",
-                ).with_hint("join the seam there, or set mesh.weld to 0 (joins vertices that coincide) or to a \
-                 tolerance"));
-            }
-            _ => {}
-        }
+        return;
     }
     let edges: usize = loops.iter().map(Vec::len).sum();
     let supports = Supports::new(supports, &Field::of(&shape.shell.positions));
@@ -242,5 +215,4 @@ fn close(
              leave out the pressure on them"
         ));
     }
-    Ok(())
 }

@@ -67,7 +67,7 @@ impl Needs {
         name: &str,
         source: &Source,
     ) -> Result<(), InputError> {
-        let elements = surface.faces.iter().map(|face| face.fan().count() as u64).sum::<u64>();
+        let elements = surface.faces.iter().map(|face| face.corners.len() as u64 - 2).sum::<u64>();
         let film = if elements > 0 { self.film(elements, None) } else { 0 };
         let needed = film.saturating_add(ELEMENT.saturating_mul(elements));
         check(needed, key, &format!("{name:?}"), &format!("has {elements} elements"), source)

@@ -9,8 +9,9 @@ use billow_solver::mechanics::supports::Supports;
 use billow_solver::scene::film_scene::FilmScene;
 use nalgebra::Vector3;
 
+use super::cut;
 use super::reader::Reader;
-use super::reference::{flattened, reference};
+use super::reference::{flat_key, flattened, reference};
 use super::shape::{Numbering, Shape};
 use super::weld;
 use crate::input::json::Json;
@@ -30,6 +31,10 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
     for vertex in &mut surface.vertices {
         *vertex *= scale;
     }
+    let origin = origin(&surface.vertices);
+    for vertex in &mut surface.vertices {
+        *vertex -= origin;
+    }
     if surface.faces.is_empty() {
         let problem = "has no faces";
         return Err(object.error("positions", problem, "an OBJ file with f lines").into());
@@ -45,35 +50,33 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
     let closing = surface.faces.iter().zip(&film).filter(|(_, film)| !**film);
     let closing: Vec<&Face> = closing.map(|(face, _)| face).collect();
     let node = weld::nodes(&surface, &joined, &film, &closing);
-    let reference = reference(&object, &surface, &film, scale, reader)?;
+    let flat = reference(&object, &surface, &film, scale, reader)?;
+    let triangles = triangles(&surface, &flat, &object)?;
     let mut shell = Shell { positions: positions(&surface, &node), ..Shell::default() };
-    let corners = |face: &Face, fan: [usize; 3]| -> Result<[u32; 3]> {
+    let corners = |face: &Face, triangle: [usize; 3]| -> Result<[u32; 3]> {
         let node = |k: usize| node[face.corners[k] as usize].unwrap_or_default();
-        let triangle = fan.map(node);
+        let triangle = triangle.map(node);
         check_triangle(&file, face, triangle, &source)?;
         Ok(triangle)
     };
     let mut element = Vec::new();
     let mut next = 0;
     for (index, (face, film)) in surface.faces.iter().zip(&film).enumerate() {
-        for (part, fan) in face.fan().enumerate() {
-            let triangle = corners(face, fan)?;
+        for triangle in &triangles[index] {
+            let nodes = corners(face, *triangle)?;
             if *film {
-                shell.triangles.push(triangle);
-                shell.reference.push(flattened(reference[index][part], face, &object)?);
+                shell.triangles.push(nodes);
+                let flat = triangle.map(|corner| flat[index][corner]);
+                shell.reference.push(flattened(flat, face, &object)?);
                 element.push(Some(next));
                 next += 1;
             } else {
+                shell.closure.push(nodes);
                 element.push(None);
             }
         }
     }
-    for face in closing {
-        for fan in face.fan() {
-            shell.closure.push(corners(face, fan)?);
-        }
-    }
-    let numbering = Numbering { surface, node, element };
+    let numbering = Numbering { surface, node, element, origin };
     check_edges(&shell, &numbering, &file, &source)?;
     Ok(Shape {
         shell,
@@ -86,6 +89,38 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
         stowed: None,
         file,
     })
+}
+
+/// Distance of a film from the origin of its file over its size from which the run has an origin of its own. Chosen:
+/// coordinates lose two of their sixteen digits there.
+const FAR: f64 = 100.0;
+
+/// The middle of a film that is far from the origin of its file, m; 0 of any other.
+fn origin(vertices: &[Vector3<f64>]) -> Vector3<f64> {
+    let Some(first) = vertices.first() else { return Vector3::zeros() };
+    let (low, high) =
+        vertices.iter().fold((*first, *first), |(low, high), x| (low.inf(x), high.sup(x)));
+    let middle = (low + high) * 0.5;
+    if middle.norm() > FAR * (high - low).norm() { middle } else { Vector3::zeros() }
+}
+
+/// Triangles of each face, as indices of its corners, cut where it is free of stress.
+fn triangles(
+    surface: &Surface,
+    flat: &[Vec<Vector3<f64>>],
+    object: &Object<'_>,
+) -> Result<Vec<Vec<[usize; 3]>>> {
+    let of_face = |(face, corners): (&Face, &Vec<Vector3<f64>>)| {
+        cut::triangles(corners).ok_or_else(|| {
+            let problem = format!(
+                "the face on line {} has no area, or crosses itself, and cannot be cut into triangles",
+                face.line
+            );
+            let allowed = "faces that do not cross themselves, in one plane or near it";
+            object.error(flat_key(object), problem, allowed).into()
+        })
+    };
+    surface.faces.iter().zip(flat).map(of_face).collect()
 }
 
 /// Position of each node: that of its first vertex, m.

@@ -6,15 +6,19 @@
 //! Every error of a scene is found here, before anything runs.
 
 mod capsule;
+mod components;
 mod conflicts;
 mod contact;
+mod cut;
 mod filling;
+mod judge;
 mod memory;
 mod mesh;
 mod motion;
 mod outputs;
 mod reader;
 mod reference;
+mod seams;
 mod selection;
 mod shape;
 mod start;
@@ -169,7 +173,18 @@ impl SceneFile {
             outputs::read(tree.get("outputs"), &shape, &mut notes, &reader.source)?;
         let end_time = end_time(&settings, &reader.source)?;
         check_sample_interval(outputs.sample_interval, end_time, &reader.source)?;
-        let contact = contact?;
+        let mut contact = contact?;
+        let origin = shape.numbering.origin;
+        for plate in contact.iter_mut().flat_map(|contact| &mut contact.plates) {
+            plate.point -= origin;
+        }
+        if origin != Vector3::zeros() {
+            let origin = <[f64; 3]>::from(origin);
+            notes.push(format!(
+                "the film is far from the origin of its file: the run and its results count from {origin:?} m; --shape has \
+                 the coordinates of the file"
+            ));
+        }
         if contact.is_none() && !statics && shape.folded {
             notes
                 .push("contact is off: film passes through film, and it is not counted".to_owned());
@@ -198,6 +213,10 @@ impl SceneFile {
         mesh::check_closure(&film, &shape.numbering, &reader.source)?;
         contact::check_plates(&film, &reader.source)?;
         notes.extend(without_effect(&film, &settings));
+        if let Some(mesh) = tree.get("mesh") {
+            let has_reference = mesh.get("reference").is_some();
+            notes.extend(judge::notes(&film, &shape.numbering, has_reference, &reader.source)?);
+        }
         let film = check_film(film, tree, &mut notes, &reader.source)?;
         notes.extend(reader.source.warnings());
         let (json, fingerprint) = identity(tree, reader);

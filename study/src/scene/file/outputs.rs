@@ -132,7 +132,8 @@ impl Recording {
             return (self.number)(json, shape);
         }
         let position = NEAR.read_vector(json).map_err(|refusal| refusal.problem)?;
-        let (distance, index) = (self.nearest)(shape, position.into());
+        let (distance, index) =
+            (self.nearest)(shape, Vector3::from(position) - shape.numbering.origin);
         if distance > MAX_DISTANCE * shape.size() {
             notes.push(format!(
                 "outputs.{}: the one nearest to {position:?} m is {distance:.4} m away",

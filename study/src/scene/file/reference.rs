@@ -9,8 +9,8 @@ use crate::input::json::Json;
 use crate::input::object::Object;
 use crate::platform::error::Result;
 
-/// Stress-free corners of each triangle of each face, m.
-pub(super) type Reference = Vec<Vec<[Vector3<f64>; 3]>>;
+/// Stress-free corners of each face, m.
+pub(super) type Reference = Vec<Vec<Vector3<f64>>>;
 
 /// Reads the stress-free shape: an OBJ file, or the shape at the start.
 pub(super) fn reference(
@@ -20,15 +20,12 @@ pub(super) fn reference(
     scale: f64,
     reader: &mut Reader,
 ) -> Result<Reference> {
-    let fans = |face: &Face, corners: &[Vector3<f64>]| -> Vec<[Vector3<f64>; 3]> {
-        face.fan().map(|fan| fan.map(|k| corners[k])).collect()
-    };
     let start = |face: &Face| -> Vec<Vector3<f64>> {
         face.corners.iter().map(|v| surface.vertices[*v as usize]).collect()
     };
     // Corners of the given faces, in order, with the name of each for errors.
     let given: Vec<(Vec<Vector3<f64>>, String)> = match object.given("reference") {
-        None => return Ok(surface.faces.iter().map(|face| fans(face, &start(face))).collect()),
+        None => return Ok(surface.faces.iter().map(start).collect()),
         Some(Json::Text(name)) => {
             let flat = reader.surface("mesh.reference", name)?;
             let position = |v: &u32| flat.vertices[*v as usize] * scale;
@@ -64,7 +61,7 @@ pub(super) fn reference(
             );
             return Err(object.error("reference", problem, REFERENCE).into());
         }
-        reference.push(fans(face, &corners));
+        reference.push(corners);
     }
     Ok(reference)
 }
@@ -85,9 +82,17 @@ pub(super) fn flattened(
     if area > 0.0 && area.is_finite() {
         return Ok(flat);
     }
-    let key = if object.given("reference").is_some() { "reference" } else { "positions" };
     let problem = format!("the face on line {} of positions has no area there", face.line);
     Err(object
-        .error(key, problem, "faces with an area, also after a polygon is cut into a fan")
+        .error(
+            flat_key(object),
+            problem,
+            "faces with an area, also after a polygon is cut into triangles",
+        )
         .into())
+}
+
+/// The key whose file has the stress-free faces.
+pub(super) fn flat_key(object: &Object<'_>) -> &'static str {
+    if object.given("reference").is_some() { "reference" } else { "positions" }
 }

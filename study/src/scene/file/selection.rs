@@ -52,7 +52,10 @@ pub(super) fn nodes(
     let positions = &shape.shell.positions;
     let all = film_nodes(shape);
     let within = |inside: &dyn Fn(Vector3<f64>) -> bool| -> Vec<u32> {
-        all.iter().copied().filter(|node| inside(positions[*node as usize])).collect()
+        all.iter()
+            .copied()
+            .filter(|node| inside(positions[*node as usize] + shape.numbering.origin))
+            .collect()
     };
     let (nodes, region) = match (on, plane) {
         ("box", _) => {
@@ -81,7 +84,8 @@ pub(super) fn nodes(
         }
     };
     if nodes.is_empty() {
-        let [low, high] = shape.extents().map(<[f64; 3]>::from);
+        let in_file = |x: Vector3<f64>| <[f64; 3]>::from(x + shape.numbering.origin);
+        let [low, high] = shape.extents().map(in_file);
         let problem = format!("selects nothing: no node lies in {region}");
         let allowed = format!(
             "a selection of at least one node; the film starts between {low:?} and {high:?} m"

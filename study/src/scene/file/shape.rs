@@ -42,8 +42,8 @@ impl Shape {
     }
 }
 
-/// Maps the numbers of the user's mesh to those of the run: vertices to nodes, triangles (faces cut
-/// into fans, in file order) to elements. For a design both are equal.
+/// Maps the numbers of the user's mesh to those of the run: vertices to nodes, triangles (of faces,
+/// in file order) to elements. For a design both are equal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Numbering {
     /// The mesh as given, vertices in m.
@@ -52,9 +52,34 @@ pub struct Numbering {
     pub node: Vec<Option<u32>>,
     /// Element of each triangle; `None` for a triangle that closes the volume.
     pub element: Vec<Option<u32>>,
+    /// Where the coordinates of the run begin in those of the file, m: 0 unless the film is far away.
+    pub origin: Vector3<f64>,
 }
 
 impl Numbering {
+    /// The triangle of an element in words: line of its face, vertices, a place.
+    pub fn place(&self, element: usize) -> String {
+        let element = u32::try_from(element).ok();
+        let triangle = self.element.iter().position(|known| known.is_some() && *known == element);
+        let mut rest = triangle.unwrap_or_default();
+        for face in &self.surface.faces {
+            let triangles = face.corners.len() - 2;
+            if rest < triangles {
+                let vertices: Vec<String> =
+                    face.corners.iter().map(|vertex| (vertex + 1).to_string()).collect();
+                let corner = self.surface.vertices[face.corners[0] as usize] + self.origin;
+                let [x, y, z] = corner.into();
+                return format!(
+                    "the face on line {} (OBJ vertices {}, at [{x}, {y}, {z}] m)",
+                    face.line,
+                    vertices.join(" ")
+                );
+            }
+            rest -= triangles;
+        }
+        "a face".to_owned()
+    }
+
     /// The first vertex of a node.
     pub fn vertex(&self, node: u32) -> Option<usize> {
         self.node.iter().position(|known| *known == Some(node))

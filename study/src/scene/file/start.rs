@@ -37,7 +37,7 @@ fn add_spin(
     source: &Source,
 ) -> Result<(), InputError> {
     let spin = Object::new(json, "start.spin", "a spin", SPIN_KEYS, &[], source)?;
-    let centre = spin.vector("centre")?.unwrap_or_default();
+    let centre = spin.vector("centre")?.unwrap_or_default() - shape.numbering.origin;
     let rate = spin.needed("rate")?;
     let angular_velocity = spin.direction("axis")? * rate;
     for (velocity, position) in velocities.iter_mut().zip(&shape.shell.positions) {

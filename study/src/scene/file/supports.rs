@@ -96,10 +96,13 @@ fn support(
     refuse_keys_of_others(object, &on)?;
     let plane = if on == "plane" { Some(Plane::read(object, shape)?) } else { None };
     let nodes = selection::nodes(object, &on, plane, shape)?;
-    let motion = object
+    let mut motion = object
         .given("move")
         .map(|json| motion::read(json, &format!("{}.move", object.path), settings, source))
         .transpose()?;
+    if let Some(rotation) = motion.as_mut().and_then(|motion| motion.rotation.as_mut()) {
+        rotation.centre -= shape.numbering.origin;
+    }
     let hold = hold(object, plane, motion.is_some(), source)?;
     let name = object.text("name")?.unwrap_or(on);
     Ok(FilmSupport { name, nodes, hold, motion })

@@ -1,0 +1,118 @@
+//! Pieces of film that enclose a volume each: their sense, and which lies inside which.
+//!
+//! ```text
+//! w(x) = Σ Ω_f/4π        winding number of a piece about x: Ω_f solid angle of face f;  ±1 inside, 0 outside
+//! tan(Ω/2) = a·(b × c) / (|a||b||c| + a·b |c| + b·c |a| + c·a |b|)      a, b, c: corners from x
+//! ```
+//! A. Van Oosterom and J. Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30 (1983).
+
+use billow_solver::geometry::shell::Shell;
+use nalgebra::Vector3;
+
+use super::shape::Shape;
+use crate::input::json::Json;
+use crate::input::source::{Source, shown};
+use crate::platform::error::InputError;
+
+/// Pieces of which the nesting is looked at, at most: each is compared with each.
+const MAX_PIECES: usize = 64;
+
+/// A connected piece of film with its closing faces.
+struct Piece {
+    faces: Vec<[u32; 3]>,
+    /// m³.
+    volume: f64,
+}
+
+/// Refuses a closed piece of several whose faces are wound inward, and notes one whose volume counts twice.
+pub(super) fn check(
+    shape: &Shape,
+    notes: &mut Vec<String>,
+    source: &Source,
+) -> Result<(), InputError> {
+    let pieces = pieces(&shape.shell);
+    if !shape.shell.is_closed() || pieces.len() < 2 || pieces.len() > MAX_PIECES {
+        return Ok(());
+    }
+    let at = |node: u32| shape.shell.positions[node as usize];
+    for (index, piece) in pieces.iter().enumerate() {
+        let first = piece.faces[0][0];
+        let inside = |(other, piece): &(usize, &Piece)| {
+            *other != index && winding(piece, at(first), at).abs() > 0.5
+        };
+        let around: Vec<usize> =
+            pieces.iter().enumerate().filter(inside).map(|(other, _)| other).collect();
+        let is_cavity = around.len() % 2 == 1;
+        let vertex = shape.numbering.vertex(first).map_or(0, |vertex| vertex + 1);
+        let position: [f64; 3] = at(first).into();
+        let place = format!(
+            "piece {} of {} (with OBJ vertex {vertex}, counted from 1, at {position:?} m)",
+            index + 1,
+            pieces.len()
+        );
+        let volume = shown(piece.volume);
+        if is_cavity && piece.volume > 0.0 {
+            notes.push(format!(
+                "{place} lies inside another one and is wound as that is: its {volume} m³ count twice; reverse its \
+                 faces if it is a cavity"
+            ));
+        } else if !is_cavity && piece.volume < 0.0 {
+            let problem =
+                format!("{place} encloses {volume} m³: its faces are wound inward, others outward");
+            let allowed = "faces counter-clockwise seen from outside, in each piece";
+            let file = Json::Text(shape.file.clone());
+            let error = source.error("mesh.positions", file, problem, allowed);
+            return Err(error.with_hint("flip the normals of this piece"));
+        }
+    }
+    Ok(())
+}
+
+/// The pieces, in the order of their first face.
+fn pieces(shell: &Shell) -> Vec<Piece> {
+    let mut first: Vec<usize> = (0..shell.positions.len()).collect();
+    let root = |first: &[usize], mut node: usize| {
+        while first[node] != node {
+            node = first[node];
+        }
+        node
+    };
+    let faces = || shell.triangles.iter().chain(&shell.closure);
+    for face in faces() {
+        let [a, b, c] = face.map(|node| root(&first, node as usize));
+        let least = a.min(b).min(c);
+        for node in [a, b, c] {
+            first[node] = least;
+        }
+    }
+    let mut index: Vec<Option<usize>> = vec![None; first.len()];
+    let mut pieces: Vec<Piece> = Vec::new();
+    for face in faces() {
+        let root = root(&first, face[0] as usize);
+        let piece = *index[root].get_or_insert_with(|| {
+            pieces.push(Piece { faces: Vec::new(), volume: 0.0 });
+            pieces.len() - 1
+        });
+        pieces[piece].faces.push(*face);
+    }
+    for piece in &mut pieces {
+        let origin = shell.positions[piece.faces[0][0] as usize];
+        let six = |face: &[u32; 3]| {
+            let [a, b, c] = face.map(|node| shell.positions[node as usize] - origin);
+            a.dot(&b.cross(&c))
+        };
+        piece.volume = piece.faces.iter().map(six).sum::<f64>() / 6.0;
+    }
+    pieces
+}
+
+/// Winding number of a piece about a position, m.
+fn winding(piece: &Piece, about: Vector3<f64>, at: impl Fn(u32) -> Vector3<f64>) -> f64 {
+    let solid_angle = |face: &[u32; 3]| {
+        let [a, b, c] = face.map(|node| at(node) - about);
+        let [x, y, z] = [a.norm(), b.norm(), c.norm()];
+        let lower = x * y * z + a.dot(&b) * z + b.dot(&c) * x + c.dot(&a) * y;
+        2.0 * libm::atan2(a.dot(&b.cross(&c)), lower)
+    };
+    piece.faces.iter().map(solid_angle).sum::<f64>() / (4.0 * core::f64::consts::PI)
+}
