@@ -191,6 +191,32 @@ fn free_edges_near_each_other_are_refused_under_any_pressure() {
     refused(&scene, &[("lid.obj", &split)], &["leaks", "and the edge between"]);
 }
 
+#[test]
+fn a_check_runs_nothing_and_says_what_the_film_is() {
+    let scene = cube(&json!({"positions": "lid.obj"}), &json!({"initial_pressure": 1}));
+    let file = with_lid(1e-4);
+    let folder = scene_folder(&scene, &[("lid.obj", file.as_str())]);
+    let checked = solve(folder.path(), &["scene.json", "--check"], "");
+    assert_eq!(checked.status.code(), Some(2), "{}", stderr(&checked));
+    let checked = solve(folder.path(), &["scene.json", "--check", "--weld", "0.2mm"], "");
+    let report: Value = serde_json::from_slice(&checked.stdout).unwrap();
+    assert_eq!(report["status"], "checked");
+    assert_eq!((&report["nodes"], &report["elements"]), (&json!(8), &json!(12)));
+    assert_eq!(report["free_edges"], json!([]));
+    assert_eq!(report["pieces"].as_array().unwrap().len(), 1);
+    near_one(number(&report, "/pieces/0/volume"));
+    assert!(number(&report, "/steps") * number(&report, "/step") >= 0.02, "{report}");
+    // Without the lid, under a pressure: one loop.
+    let open = CUBE.lines().take(15).fold(String::new(), |text, line| text + line + "\n");
+    let scene = cube(&json!({"positions": "open.obj"}), &json!({"pressure": 1}));
+    let folder = scene_folder(&scene, &[("open.obj", &open)]);
+    let checked = solve(folder.path(), &["scene.json", "--check", "-q"], "");
+    let report: Value = serde_json::from_slice(&checked.stdout).unwrap();
+    assert_eq!(report["free_edges"][0]["edges"], 4);
+    assert!((number(&report, "/free_edges/0/length") - 4.0).abs() < 1e-12, "{report}");
+    assert_eq!(report["pieces"][0]["volume"], Value::Null);
+}
+
 fn near_one(volume: f64) {
     assert!((volume - 1.0).abs() < 0.02, "{volume}");
 }

@@ -15,7 +15,7 @@ use crate::platform::stop::Stop;
 use crate::print::print_rows;
 use crate::scene::file::SceneFile;
 use crate::scene::solve::{self, Ended, Pauses, Solved};
-use crate::scene::summary;
+use crate::scene::{check, summary};
 use crate::store::history_file;
 
 /// Arguments of `billow solve`.
@@ -23,6 +23,12 @@ use crate::store::history_file;
 pub struct Args {
     /// Scene file.
     pub scene: PathBuf,
+    /// Judge the mesh and print what it is: pieces, volume, free edges, stretch, step. Runs nothing.
+    #[arg(long, conflicts_with_all = ["out", "shape", "checkpoint", "resume"])]
+    pub check: bool,
+    /// Join vertices nearer to each other than this distance, as in 0.1mm: --set mesh.weld.
+    #[arg(long, value_name = "DISTANCE")]
+    pub weld: Option<String>,
     /// Write the history to this HDF5 file.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
@@ -58,19 +64,21 @@ const PROGRESS_INTERVAL: Duration = Duration::from_secs(5);
 /// # Errors
 /// An invalid scene, a file that cannot be read or written, a run that stopped before its end.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let scene = SceneFile::load(&args.scene, &args.set.set, instruction_set::selected()?)?;
+    let mut sets = args.set.set.clone();
+    sets.extend(args.weld.iter().map(|distance| format!("mesh.weld={distance}")));
+    let scene = SceneFile::load(&args.scene, &sets, instruction_set::selected()?)?;
     check_files(args, &scene)?;
     if !args.quiet.quiet {
         for note in &scene.notes {
             eprintln!("billow: {note}");
         }
     }
+    if args.check {
+        return print(&check::report(&scene), args, out);
+    }
     let solved = solve(args, &scene)?;
     let summary = summary::summary(&scene, &solved);
-    match args.output.format_or(Format::Json) {
-        Format::Json => writeln!(out, "{summary:#}").map_err(output_error)?,
-        format => print_rows(&["quantity", "value"], &summary::rows(&summary), format, out)?,
-    }
+    print(&summary, args, out)?;
     write_files(args, &scene, &solved)?;
     if let (Status::Paused, Some(path), false) = (solved.status, &args.checkpoint, args.quiet.quiet)
     {
@@ -84,6 +92,13 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let location = stop["location"].as_str().unwrap_or_default();
     let time = stop["time"].as_f64().map_or_else(String::new, |time| format!(" at {time} s"));
     Err(Error::JobsFailed(format!("{}: {}{time}: {location}", args.scene.display(), solved.status)))
+}
+
+fn print(summary: &serde_json::Value, args: &Args, out: &mut dyn Write) -> Result<()> {
+    match args.output.format_or(Format::Json) {
+        Format::Json => writeln!(out, "{summary:#}").map_err(output_error),
+        format => print_rows(&["quantity", "value"], &summary::rows(summary), format, out),
+    }
 }
 
 /// Solves the scene; prints the progress on stderr.

@@ -1,5 +1,6 @@
 //! One scene without a study: its file, its run, its summary.
 
+pub mod check;
 pub mod file;
 pub mod solve;
 pub mod summary;

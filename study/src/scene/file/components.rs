@@ -18,10 +18,11 @@ use crate::platform::error::InputError;
 const MAX_PIECES: usize = 64;
 
 /// A connected piece of film with its closing faces.
-struct Piece {
-    faces: Vec<[u32; 3]>,
-    /// m³.
-    volume: f64,
+pub struct Piece {
+    /// Film and closing faces.
+    pub faces: Vec<[u32; 3]>,
+    /// Enclosed volume, m³; of an open piece that of the cone from its first vertex.
+    pub volume: f64,
 }
 
 /// Refuses a closed piece of several whose faces are wound inward, and notes one whose volume counts twice.
@@ -69,7 +70,7 @@ pub(super) fn check(
 }
 
 /// The pieces, in the order of their first face.
-fn pieces(shell: &Shell) -> Vec<Piece> {
+pub fn pieces(shell: &Shell) -> Vec<Piece> {
     let mut first: Vec<usize> = (0..shell.positions.len()).collect();
     let root = |first: &[usize], mut node: usize| {
         while first[node] != node {

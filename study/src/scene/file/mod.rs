@@ -6,7 +6,7 @@
 //! Every error of a scene is found here, before anything runs.
 
 mod capsule;
-mod components;
+pub(super) mod components;
 mod conflicts;
 mod contact;
 mod cut;

@@ -1,0 +1,69 @@
+//! What `billow solve --check` prints of a scene that it does not run: the film, its pieces, its free edges, its step.
+
+use billow_solver::geometry::field::Field;
+use billow_solver::geometry::shell::Shell;
+use billow_solver::mechanics::film_model::FilmModel;
+use billow_solver::mechanics::resultants::stretches;
+use nalgebra::Vector3;
+use serde_json::{Value as Json, json};
+
+use super::file::SceneFile;
+use super::file::components::{Piece, pieces};
+
+/// The film of a scene, SI. A scene that is refused has an error instead.
+pub fn report(scene: &SceneFile) -> Json {
+    let shell = &scene.film.shell;
+    let at = |node: u32| shell.positions[node as usize] + scene.numbering.origin;
+    let vertex = |node: u32| scene.numbering.vertex(node).map(|vertex| vertex + 1);
+    let loops = shell.boundary();
+    let of_loop = |nodes: &Vec<u32>| {
+        let edges = (0..nodes.len()).map(|k| [nodes[k], nodes[(k + 1) % nodes.len()]]);
+        let length: f64 = edges.map(|[a, b]| (at(a) - at(b)).norm()).sum();
+        let first = nodes.first().copied().unwrap_or_default();
+        json!({
+            "edges": nodes.len(), "length": length, "obj_vertex": vertex(first),
+            "position": <[f64; 3]>::from(at(first)),
+        })
+    };
+    let of_piece = |piece: &Piece| {
+        let first = piece.faces[0][0];
+        let closed =
+            !loops.iter().flatten().any(|node| piece.faces.iter().flatten().any(|of| of == node));
+        json!({
+            "faces": piece.faces.len(), "volume": closed.then_some(piece.volume),
+            "obj_vertex": vertex(first), "position": <[f64; 3]>::from(at(first)),
+        })
+    };
+    let mut report = json!({
+        "status": "checked",
+        "nodes": shell.positions.len(),
+        "elements": shell.triangles.len(),
+        "closing_faces": shell.closure.len(),
+        "area": shell.reference_area(),
+        "volume": shell.volume(|node| shell.positions[node as usize]),
+        "edge_length": edge_lengths(shell),
+        "pieces": pieces(shell).iter().map(of_piece).collect::<Vec<_>>(),
+        "free_edges": loops.iter().map(of_loop).collect::<Vec<_>>(),
+        "notes": scene.notes,
+    });
+    if let Ok(model) = FilmModel::of_shell(&scene.film.film.elastic(), shell) {
+        let stretch = stretches(&model, &Field::of(&shell.positions)).map(|(stretch, _)| stretch);
+        report["stretch"] = json!({"start": stretch});
+        let step = 2.0 * scene.film.solver.cfl / model.largest_frequency();
+        report["step"] = json!(step);
+        report["steps"] = json!(libm::ceil(scene.film.solver.end_time / step));
+    }
+    report
+}
+
+/// Smallest, mean and largest length of an edge of the film at the start, m.
+fn edge_lengths(shell: &Shell) -> [f64; 3] {
+    let at = |node: u32| -> Vector3<f64> { shell.positions[node as usize] };
+    let edges = shell.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let lengths: Vec<f64> = edges.map(|[a, b]| (at(a) - at(b)).norm()).collect();
+    let mean = lengths.iter().sum::<f64>() / lengths.len().max(1) as f64;
+    let (least, most) = lengths.iter().fold((f64::INFINITY, 0.0_f64), |(least, most), length| {
+        (least.min(*length), most.max(*length))
+    });
+    [least, mean, most]
+}
