@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::quantity::Quantity;
-use super::words::Word;
+use super::words::{FORMULAS, Word};
 use crate::input::json::Json;
 use crate::input::plausible;
 use crate::input::source::Source;
@@ -190,8 +190,10 @@ impl Key {
             (KeyKind::Quantity(quantity), _) => quantity.read(json).or_else(refuse),
             (KeyKind::Integer(min, max), _) => integer(json, min, max).or_else(refuse),
             (KeyKind::Choice(words), Json::Text(text)) => {
-                if names(words).any(|name| name == text) {
-                    return Ok(Value::Text(text.clone()));
+                let named = FORMULAS.iter().find(|(formula, _)| formula == text);
+                let word = named.map_or(text.as_str(), |(_, name)| *name);
+                if names(words).any(|name| name == word) {
+                    return Ok(Value::Text(word.to_owned()));
                 }
                 if self.path == "design.caps" && text == "circular" {
                     return refuse(

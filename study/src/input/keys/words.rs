@@ -254,6 +254,15 @@ pub(crate) const SPECIES: [Named<Species>; 6] = [
     gas("hydrogen", 4_124.48, 14_310.0),
 ];
 
+/// Formulas that people write for these names.
+pub(crate) const FORMULAS: [(&str, &str); 5] = [
+    ("N2", "nitrogen"),
+    ("He", "helium"),
+    ("Ar", "argon"),
+    ("CO2", "carbon_dioxide"),
+    ("H2", "hydrogen"),
+];
+
 /// Words of `gas.heat_transfer`, with the coefficient each stands for, W/(m² K).
 pub(crate) const ISOTHERMAL: &str = "isothermal";
 pub(crate) const HEAT_TRANSFER_WORDS: &[(&str, f64)] =

@@ -8,7 +8,7 @@
 //!
 //! ```text
 //! quantity = number unit            unit = product [ "/" product { "/" product } ]
-//! product  = "(" product ")" | symbol [ ["^"] power ] { ["·" | "*"] symbol [ ["^"] power ] }
+//! product  = "(" product ")" | symbol [ ["^"] power ] { ["·" | "*"] symbol [ ["^"] power ] }      power: s-1, s^-1, s⁻¹
 //! ```
 //! Everything after the first `/` is in the denominator: W/m2K, W/m2 K and W/(m2 K) are the same.
 
@@ -60,6 +60,20 @@ pub fn parse_powers(text: &str, wanted: Powers) -> Result<f64, String> {
     if wanted == Dimension::Temperature.powers() && CELSIUS.contains(&unit) {
         return finite(decimal::shifted(number, ZERO_CELSIUS), text);
     }
+    if wanted == Dimension::Temperature.powers() && FAHRENHEIT.contains(&unit) {
+        let shifted = decimal::shifted(number, ZERO_FAHRENHEIT);
+        return finite(shifted.map(|kelvins| kelvins * 5.0 / 9.0), text);
+    }
+    if unit.starts_with([',', '\'', '’']) {
+        let problem = "has a separator in its number: a decimal point is a point, and digits stand together, as in";
+        return Err(format!("{problem} \"1000.5 mm\""));
+    }
+    if STANDARD_FLOWS.contains(&unit) {
+        return Err(format!(
+            "{unit} is a volume at a standard state, another mass of each gas: of nitrogen at 0 °C and 1 atm, 1 SLPM is \
+             0.02083 g/s and 1 sccm 0.02083 mg/s"
+        ));
+    }
     let scale = symbol::unit(unit)?;
     if scale.powers != wanted {
         return Err(format!(
@@ -72,7 +86,16 @@ pub fn parse_powers(text: &str, wanted: Powers) -> Result<f64, String> {
 }
 
 /// Units of temperature with their zero at 0 °C.
-const CELSIUS: [&str; 3] = ["degC", "°C", "celsius"];
+const CELSIUS: [&str; 4] = ["degC", "°C", "celsius", "C"];
+
+/// Units of temperature of 5/9 K with their zero at −459.67.
+const FAHRENHEIT: [&str; 3] = ["degF", "°F", "F"];
+
+/// 0 °F in 5/9 K, 459.67.
+const ZERO_FAHRENHEIT: (i128, i32) = (45_967, -2);
+
+/// Units of a flow that is no mass flow.
+const STANDARD_FLOWS: [&str; 5] = ["SLPM", "slpm", "slm", "SCCM", "sccm"];
 
 /// 0 °C in K, 273.15: 27315 hundredths.
 const ZERO_CELSIUS: (i128, i32) = (27_315, -2);

@@ -55,6 +55,9 @@ impl Scale {
 /// Symbol, powers of m kg s K rad B, factor, power of ten, whether it may have an SI prefix.
 type Known = (&'static str, Powers, u64, i32, bool);
 
+/// Powers of a pressure.
+const PRESSURE: Powers = [-1, 1, -2, 0, 0, 0];
+
 /// Every known unit without a prefix; `kg` is `g` with a prefix.
 const KNOWN: &[Known] = &[
     ("m", [1, 0, 0, 0, 0, 0], 1, 0, true),
@@ -70,10 +73,19 @@ const KNOWN: &[Known] = &[
     ("bar", [-1, 1, -2, 0, 0, 0], 1, 5, true),
     ("l", [3, 0, 0, 0, 0, 0], 1, -3, true),
     ("L", [3, 0, 0, 0, 0, 0], 1, -3, true),
+    ("gram", [0, 1, 0, 0, 0, 0], 1, -3, false),
     ("t", [0, 1, 0, 0, 0, 0], 1, 3, false),
+    ("lb", [0, 1, 0, 0, 0, 0], 45_359_237, -8, false),
+    ("sec", [0, 0, 1, 0, 0, 0], 1, 0, false),
     ("min", [0, 0, 1, 0, 0, 0], 60, 0, false),
     ("h", [0, 0, 1, 0, 0, 0], 3600, 0, false),
     ("atm", [-1, 1, -2, 0, 0, 0], 101_325, 0, false),
+    ("Torr", PRESSURE, 13_332_236_842_105_263, -14, false),
+    ("mmHg", PRESSURE, 133_322_387_415, -9, false),
+    ("psi", PRESSURE, 6_894_757_293_168_361, -12, false),
+    ("ksi", PRESSURE, 6_894_757_293_168_361, -9, false),
+    ("cc", [3, 0, 0, 0, 0, 0], 1, -6, false),
+    ("micron", [1, 0, 0, 0, 0, 0], 1, -6, false),
     ("in", [1, 0, 0, 0, 0, 0], 254, -4, false),
     ("mil", [1, 0, 0, 0, 0, 0], 254, -7, false),
     ("ft", [1, 0, 0, 0, 0, 0], 3048, -4, false),
@@ -183,10 +195,10 @@ fn product(mut scale: Scale, text: &str, sign: i32) -> Option<Scale> {
         let mut power = String::new();
         if chars.get(position) == Some(&'^') {
             position += 1;
-            if chars.get(position) == Some(&'-') {
-                power.push('-');
-                position += 1;
-            }
+        }
+        if chars.get(position) == Some(&'-') {
+            power.push('-');
+            position += 1;
         }
         while chars.get(position).is_some_and(char::is_ascii_digit) {
             power.push(chars[position]);
@@ -204,8 +216,10 @@ fn product(mut scale: Scale, text: &str, sign: i32) -> Option<Scale> {
 /// A plain digit for a superscript one, a plain space for any other space.
 fn plain(c: char) -> char {
     match c {
+        '¹' => '1',
         '²' => '2',
         '³' => '3',
+        '⁻' | '−' => '-',
         '\u{a0}' | '\u{202f}' | '\t' => ' ',
         other => other,
     }

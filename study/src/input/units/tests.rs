@@ -46,6 +46,19 @@ fn decimal_units_convert_bit_for_bit() {
         ("10 1/s", Dimension::Frequency, 10.0),
         ("1e-3 kg", Dimension::Mass, 1e-3),
         ("2.5E+1 mm", Dimension::Length, 0.025),
+        ("5 g s-1", Dimension::MassFlowRate, 0.005),
+        ("5 g·s⁻¹", Dimension::MassFlowRate, 0.005),
+        ("5 gram/sec", Dimension::MassFlowRate, 0.005),
+        ("0.6 lb/min", Dimension::MassFlowRate, 0.272_155_422 / 60.0),
+        ("25.4 micron", Dimension::Length, 25.4e-6),
+        ("1420 kg m-3", Dimension::Density, 1420.0),
+        ("1.42 g/cc", Dimension::Density, 1420.0),
+        ("760 Torr", Dimension::Pressure, 101_325.0),
+        ("750 mmHg", Dimension::Pressure, 99_991.790_561_25),
+        ("14.7 psi", Dimension::Pressure, 101_352.932_209_574_91),
+        ("500 ksi", Dimension::Pressure, 3_447_378_646.584_180_5),
+        ("20 C", Dimension::Temperature, 293.15),
+        ("68 °F", Dimension::Temperature, 527.67 * 5.0 / 9.0),
         ("30 deg", Dimension::Angle, std::f64::consts::FRAC_PI_6),
         ("180°", Dimension::Angle, std::f64::consts::PI),
     ] {
@@ -80,6 +93,10 @@ fn texts_that_are_not_quantities_are_refused() {
         "5 m m m m m m m",
         "5 \u{0}m",
         "5 ²",
+        "5,0 mm",
+        "1'000 mm",
+        "5 SLPM",
+        "5 m-",
     ] {
         assert!(parse(text, Dimension::Length).is_err(), "{text:?}");
     }
