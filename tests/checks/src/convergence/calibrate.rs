@@ -1,8 +1,8 @@
 //! The table of mesh errors, from runs on several meshes.
 //!
 //! ```text
-//! v = F ln(m/m_ref)      one run; m_ref: median of the runs of its scene on the reference mesh
-//! F = (1/n − 1/n_f)/(1/n − 1/n_ref)    to the finest mesh n_f: errors go as 1/n;  1 for models without mesh:
+//! v = F ln(m/m_ref)      one run; m_ref: median of the runs of its scene on its finest mesh n_ref, 16 or 24
+//! F = (1/n − 1/n_f)/(1/n − 1/n_ref)    to the finest mesh n_f, 24: errors go as 1/n;  1 for models without mesh:
 //!                        their errors are against n_ref
 //! bias of a scene = median of v;  bias(x): [`super::regression`] over all scenes
 //! width = the distance from bias(x) that 19 of 20 runs keep, each predicted from all other scenes
@@ -46,8 +46,8 @@ struct Scene {
 /// An assumed value, a model and its mesh or meshes.
 type Method = (String, ModelKind, Vec<u32>);
 
-/// The table from these scenes, with the errors against the mesh of `reference` subdivisions; `None` if no scene
-/// has a run on it.
+/// The table from these scenes, with the errors against their runs on the finest mesh, or where these are missing on
+/// that of `reference` subdivisions; `None` if no scene has a run on the latter.
 pub(super) fn calibrate(
     scenes: &[SceneRuns],
     studies: Vec<String>,
@@ -64,13 +64,13 @@ pub(super) fn calibrate(
     let (mut errors, mut assumed) = (BTreeMap::new(), BTreeMap::new());
     for promised in &PROMISED {
         let measure = promised.measure;
-        let of_reference = |scene: &SceneRuns| scene.median(measure, (ModelKind::Film, reference));
-        let of_measure: Vec<Scene> = {
-            let of =
-                |scene: &&SceneRuns| Scene::of(scene, measure, of_reference(scene)?, reference);
-            scenes.iter().filter_map(of).collect()
+        let of_reference = |scene: &SceneRuns| {
+            let on = |n: u32| Some((n, scene.median(measure, (ModelKind::Film, n))?));
+            [FINEST, reference].into_iter().find_map(on)
         };
-        let (of_meshes, changes) = entries(&of_measure, &coordinates, reference);
+        let of = |scene: &&SceneRuns| Scene::of(scene, measure, of_reference(scene)?);
+        let of_measure: Vec<Scene> = scenes.iter().filter_map(of).collect();
+        let (of_meshes, changes) = entries(&of_measure, &coordinates);
         errors.insert(measure.name().to_owned(), of_meshes);
         assumed.insert(measure.name().to_owned(), changes);
     }
@@ -119,11 +119,14 @@ fn longest(scenes: &[SceneRuns]) -> Vec<&SceneRuns> {
 }
 
 impl Scene {
-    /// The values of a scene over that on the reference mesh, to the finest one.
-    fn of(scene: &SceneRuns, measure: ColumnId, value: f64, reference: u32) -> Option<Self> {
+    /// The values of a scene over that on its reference mesh, to the finest one; none of that mesh itself.
+    fn of(scene: &SceneRuns, measure: ColumnId, (reference, value): (u32, f64)) -> Option<Self> {
         let mut values: BTreeMap<Kind, BTreeMap<u64, f64>> = BTreeMap::new();
         for run in &scene.runs {
             let (assumed, mesh) = (run.assumed(), run.mesh());
+            if mesh.1 >= reference {
+                continue;
+            }
             let of = if assumed.is_empty() { Some(value) } else { scene.median(measure, mesh) };
             let order = if assumed.is_empty() { first_order(mesh, reference) } else { 1.0 };
             let ratio = run.measure(measure).zip(of).map(|(measured, of)| measured / of);
@@ -169,9 +172,9 @@ fn extrapolated(of_meshes: [f64; 2], weight: f64) -> Option<f64> {
     logarithm(fine + weight * (fine - coarse))
 }
 
-/// F of a mesh; 1 for a model without mesh, and for a mesh that is not coarser than the reference.
+/// F of a mesh; 1 for a model without mesh.
 fn first_order((model, n): (ModelKind, u32), reference: u32) -> f64 {
-    if model != ModelKind::Film || n >= reference {
+    if model != ModelKind::Film {
         return 1.0;
     }
     let [size, reference, finest] =
@@ -180,13 +183,9 @@ fn first_order((model, n): (ModelKind, u32), reference: u32) -> f64 {
 }
 
 /// The entries of a measure: of models without a mesh, each mesh, each pair of meshes; and of each assumed value.
-fn entries(
-    scenes: &[Scene],
-    coordinates: &Coordinates,
-    reference: u32,
-) -> (Vec<Entry>, BTreeMap<String, Entry>) {
+fn entries(scenes: &[Scene], coordinates: &Coordinates) -> (Vec<Entry>, BTreeMap<String, Entry>) {
     let kinds: BTreeSet<&Kind> = scenes.iter().flat_map(|scene| scene.values.keys()).collect();
-    let film = |kind: &&&Kind| kind.1 == ModelKind::Film as u8 && kind.2 < reference;
+    let film = |kind: &&&Kind| kind.1 == ModelKind::Film as u8;
     let (unchanged, changed): (Vec<&Kind>, Vec<&Kind>) =
         kinds.iter().copied().filter(|kind| film(&kind)).partition(|kind| kind.0.is_empty());
     let meshes: Vec<u32> = unchanged.iter().map(|kind| kind.2).collect();
