@@ -54,9 +54,7 @@ fn status_works_under_the_lock_of_another_process() {
     let folder = ran();
     let lock = Disk.try_lock(&folder.results().join("lock")).unwrap().unwrap();
     assert_eq!(json_of(&folder, &["status"])["running"], true);
-    assert!(
-        folder.stdout(&["status"]).starts_with("grid: running: another process holds its lock")
-    );
+    assert!(folder.stdout(&["status"]).starts_with("grid: running, by another process"));
     let again = ["run", "grid.json", "--again", &ids(&folder, "done")[0], "-q"];
     folder.refuses(&again, "another billow command is running");
     drop(lock);

@@ -57,6 +57,15 @@ impl Entry {
         self.bias + self.slopes.iter().zip(u).map(|(slope, u)| slope * u).sum::<f64>()
     }
 
+    /// How far below and above a value that with the assumed value may be, over it, in 19 of 20 runs of a scene with
+    /// these coordinates.
+    pub fn change(&self, u: &[f64; FEATURES]) -> [f64; 2] {
+        let bias = self.bias(u);
+        let (below, above) =
+            (1.0 - libm::exp(bias - self.width), libm::exp(bias + self.width) - 1.0);
+        [below.max(0.0), above.max(0.0)]
+    }
+
     /// The error of 19 of 20 runs of a scene with these coordinates.
     pub fn error(&self, u: &[f64; FEATURES]) -> RelativeError {
         let (bias, width) = (self.bias(u), self.width);

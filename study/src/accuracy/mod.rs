@@ -23,5 +23,5 @@ pub use features::{Coverage, Features};
 pub use promised::{
     NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED, Promised, error_columns, is_error_column,
 };
-pub use row::{RowErrors, is_of_pilots, is_unknown, of_pilots};
+pub use row::{RowErrors, is_of_pilots, is_unknown, of_pilots, together};
 pub use table::MeshErrors;

@@ -10,8 +10,8 @@ pub struct Promised {
     pub measure: ColumnId,
     /// Names of the columns of its mesh error, below and above the value.
     pub error_columns: [&'static str; 2],
-    /// Name of the column of its change over the ranges of the assumed values.
-    pub assumed_column: &'static str,
+    /// Names of the columns of its change over the ranges of the assumed values, below and above the value.
+    pub assumed_columns: [&'static str; 2],
     /// Whether an accuracy that is asked for holds for it: the others scatter by more from seed to seed.
     pub is_asked: bool,
 }
@@ -22,7 +22,7 @@ macro_rules! promised {
         Promised {
             measure: ColumnId::$id,
             error_columns: [concat!($name, "_error_below"), concat!($name, "_error_above")],
-            assumed_column: concat!($name, "_assumed"),
+            assumed_columns: [concat!($name, "_assumed_below"), concat!($name, "_assumed_above")],
             is_asked: $is_asked,
         }
     };
@@ -61,7 +61,7 @@ impl Promised {
     }
 
     /// Names and meanings of the columns of its mesh error and of its change with the assumed values.
-    pub fn columns(&self) -> [(&'static str, String); 3] {
+    pub fn columns(&self) -> [(&'static str, String); 4] {
         let measure = self.measure.name();
         let finest = MeshErrors::shipped().finest;
         let error = |side: &str| {
@@ -69,11 +69,18 @@ impl Promised {
                 "mesh error of {measure}: how far {side} it the value on n {finest} may be, kept by 19 of 20 runs; null where it is not known (no_error_reason)"
             )
         };
-        let assumed = format!(
-            "change of {measure} over the ranges of what is assumed (key assumed): film.loss_factor and gas.heat_transfer; null where it is not known"
-        );
-        let [below, above] = self.error_columns;
-        [(below, error("below")), (above, error("above")), (self.assumed_column, assumed)]
+        let assumed = |side: &str| {
+            format!(
+                "how far {side} it {measure} may be over the ranges of what is assumed (key assumed), film.loss_factor and gas.heat_transfer, in 19 of 20 runs; null where it is not known"
+            )
+        };
+        let ([below, above], [less, more]) = (self.error_columns, self.assumed_columns);
+        [
+            (below, error("below")),
+            (above, error("above")),
+            (less, assumed("below")),
+            (more, assumed("above")),
+        ]
     }
 }
 
@@ -95,7 +102,7 @@ pub fn error_columns(measure: &str) -> Option<[&'static str; 2]> {
 /// Whether a column holds mesh errors, or changes with the assumed values.
 pub fn is_error_column(name: &str) -> bool {
     let is = |promised: &Promised| {
-        promised.error_columns.contains(&name) || promised.assumed_column == name
+        promised.error_columns.contains(&name) || promised.assumed_columns.contains(&name)
     };
     PROMISED.iter().any(is)
 }

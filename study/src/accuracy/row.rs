@@ -13,8 +13,8 @@ use crate::job::row::{CellType, Cells, ColumnGroup, ColumnId};
 pub struct RowErrors {
     /// Mesh errors, in the unit of the measure: how far below and above it the value on the finest mesh may be.
     pub errors: [Option<[f64; 2]>; PROMISED.len()],
-    /// Changes over the ranges of the assumed values.
-    pub assumed: [Option<f64>; PROMISED.len()],
+    /// Changes over the ranges of the assumed values, below and above it.
+    pub assumed: [Option<[f64; 2]>; PROMISED.len()],
     /// Why some mesh errors are not known.
     pub reason: Option<String>,
 }
@@ -40,7 +40,8 @@ impl RowErrors {
         let assumed = |features: &Features| {
             PROMISED.map(|promised| {
                 let value = cells.number(promised.measure)?;
-                Some(table.assumed(features, &promised, ranges)? * value.abs())
+                let sides = table.assumed(features, &promised, ranges)?;
+                Some(sides.map(|side| side * value.abs()))
             })
         };
         if let Some(gap) = table.gap(scene, &features) {
@@ -80,7 +81,7 @@ impl RowErrors {
     /// Uncertainty of a value of this row.
     pub fn uncertainty(&self, measure: ColumnId, cells: &Cells) -> Option<[f64; 2]> {
         let near = *cells.get(ColumnId::NearThreshold) == Value::Bool(true);
-        let parts = |index: usize| (self.errors[index], self.assumed[index]);
+        let parts = |index: usize| [self.errors[index], self.assumed[index]];
         uncertainty(measure, near, self.reason.as_deref(), parts)
     }
 }
@@ -88,7 +89,7 @@ impl RowErrors {
 /// Uncertainty of a value of a row, SI, below and above it: `None` where it is not known.
 ///
 /// ```text
-/// u² = e² + a²      e: mesh error on that side;  a: change over the ranges of the assumed values
+/// u² = e² + a²      on each side;  e: mesh error,  a: change over the ranges of the assumed values
 /// ```
 /// A verdict has none, or an infinite one near a threshold; what depends on no mesh has none. `parts` are e and a of a
 /// promised measure, by its position; `reason` says why a row has no mesh errors.
@@ -96,7 +97,7 @@ pub fn uncertainty(
     measure: ColumnId,
     near_threshold: bool,
     reason: Option<&str>,
-    parts: impl Fn(usize) -> (Option<[f64; 2]>, Option<f64>),
+    parts: impl Fn(usize) -> [Option<[f64; 2]>; 2],
 ) -> Option<[f64; 2]> {
     if measure == ColumnId::Verdict {
         let known =
@@ -107,8 +108,14 @@ pub fn uncertainty(
         return Some([0.0; 2]);
     }
     let promised = promise(measure.name())?;
-    let (error, assumed) = parts(PROMISED.iter().position(|one| one == promised)?);
-    Some(error?.map(|side| libm::hypot(side, assumed.unwrap_or(0.0))))
+    let [error, assumed] = parts(PROMISED.iter().position(|one| one == promised)?);
+    Some(together(error?, assumed))
+}
+
+/// Uncertainty by a mesh error and by what is assumed, where that is known: below and above a value.
+pub fn together(error: [f64; 2], assumed: Option<[f64; 2]>) -> [f64; 2] {
+    let assumed = assumed.unwrap_or_default();
+    [0, 1].map(|side| libm::hypot(error[side], assumed[side]))
 }
 
 /// Whether a column is no measure of the motion: a count, a word, a number of the audit.

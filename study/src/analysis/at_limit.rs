@@ -17,8 +17,8 @@ pub struct AtLimit {
     pub value: Value,
     /// Its mesh error below and above it, SI, where it is known.
     pub mesh_error: Option<[f64; 2]>,
-    /// Its change over the ranges of the assumed values, SI, where it is known.
-    pub assumed: Option<f64>,
+    /// Its change over the ranges of the assumed values, below and above it, SI, where it is known.
+    pub assumed: Option<[f64; 2]>,
     /// Its uncertainty by both, below and above it, SI, where it is known.
     pub uncertainty: Option<[f64; 2]>,
     /// Whether it is met; `None` for a job that is not done, and where its measure has no value.
@@ -32,7 +32,7 @@ impl AtLimit {
     pub fn of(table: &Table, limit: &ResultLimit, row: usize) -> Self {
         let measure = limit.measure;
         let column = table.column(measure.name());
-        let (mesh_error, assumed) = table.error_parts(measure, row);
+        let [mesh_error, assumed] = table.error_parts(measure, row);
         let si = || DisplayUnit::si(measure.column().unit);
         Self {
             limit: limit.clone(),
@@ -54,7 +54,8 @@ impl Serialize for AtLimit {
             "value": json_value(&self.value),
             "mesh_error_below": self.mesh_error.map(|[below, _]| below),
             "mesh_error_above": self.mesh_error.map(|[_, above]| above),
-            "assumed": self.assumed,
+            "assumed_below": self.assumed.map(|[below, _]| below),
+            "assumed_above": self.assumed.map(|[_, above]| above),
             "margin": self.judged.map(|judged| judged.margin),
             "safety": self.judged.map(|judged| judged.safety().name()),
         })

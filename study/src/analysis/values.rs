@@ -1,6 +1,7 @@
 //! The values of a table's rows: as they are matched, and as measures.
 
 use crate::accuracy::error_columns;
+use crate::accuracy::promised::promise;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::store::table::{Column, Table};
@@ -30,6 +31,13 @@ pub fn measured(table: &Table, measure: &Column, row: usize) -> Option<f64> {
 /// The columns with the mesh error of a measure, below and above its value.
 pub fn columns_of_error<'a>(table: &'a Table, measure: &str) -> Option<[&'a Column; 2]> {
     let [below, above] = error_columns(measure)?.map(|name| table.column(name));
+    Some([below?, above?])
+}
+
+/// The columns with the change of a measure over the ranges of what is assumed, below and above its value.
+pub fn columns_of_assumed<'a>(table: &'a Table, measure: &str) -> Option<[&'a Column; 2]> {
+    let measure = measure.strip_suffix("_extrapolated").unwrap_or(measure);
+    let [below, above] = promise(measure)?.assumed_columns.map(|name| table.column(name));
     Some([below?, above?])
 }
 

@@ -123,7 +123,7 @@ impl Bound {
     /// Text of the legend.
     pub fn text(&self) -> String {
         if self.margin {
-            format!("not safe; above 0: {}", self.text)
+            format!("missed by its value; above 0: {}, uncertainty not counted", self.text)
         } else {
             format!("misses the limit ({})", self.text)
         }

@@ -71,7 +71,7 @@ pub fn svg(source: &Source<'_>, measure: &str, over: &str, by: &[String]) -> Res
     let mut legends = encoding.legends(positions.names);
     let range = if positions.names { Sample::Bar } else { Sample::Band };
     legends.extend(source.runs_legend(range, &panels));
-    legends.extend(source.mesh_error_legend(measure));
+    legends.extend(source.uncertainty_legend(measure));
     legends.push(drawing.outcomes.legend(false));
     legends.extend(bound.map(|bound| bound.legend()));
     let title = source.title_or(&format!("{} over {}", name.plain, x.plain().plain));
@@ -87,7 +87,7 @@ pub(super) fn extent(
     notes: &mut Vec<String>,
 ) -> (Unit, Option<[f64; 2]>, Option<Bound>) {
     let of_row = |row: &usize| {
-        let ends = [source.range(measure, *row), source.mesh_error(measure, *row)];
+        let ends = [source.range(measure, *row), source.uncertainty(measure, *row)];
         let ends = ends.into_iter().flatten().flatten();
         ends.chain(outcome::value(source, measure, *row)).collect::<Vec<f64>>()
     };
@@ -146,7 +146,7 @@ impl Drawing<'_, '_> {
             line.marks.push((point, self.outcomes.mark(*row)));
             let text = outcome::mixed_text(source, *row);
             line.texts.extend((!text.is_empty()).then_some((point, text)));
-            line.errors.extend(source.mesh_error(measure, *row).map(ends));
+            line.errors.extend(source.uncertainty(measure, *row).map(ends));
             let range = source.range(measure, *row);
             if self.positions.names {
                 line.bars.extend(range.map(ends));

@@ -1,8 +1,8 @@
 //! The runs behind the points of a chart, where replicates repeat a point: median, range, k of n.
 
 use super::{Source, names};
-use crate::accuracy::{MeshErrors, NO_ERROR_REASON};
-use crate::analysis::compare::{columns_of_error, error_at, measured};
+use crate::accuracy::{MeshErrors, NO_ERROR_REASON, together};
+use crate::analysis::compare::{columns_of_assumed, columns_of_error, error_at, measured};
 use crate::analysis::replicates::{self, Condensed, Runs, is_mesh};
 use crate::input::value::Value;
 use crate::render::figure::legend::{Legend, Sample};
@@ -40,26 +40,30 @@ impl<'a> Source<'a> {
         (least < largest).then_some([least, largest])
     }
 
-    /// Value less and plus mesh error of a measure at a row; of several runs of their medians.
-    pub(super) fn mesh_error(&self, measure: &Column, row: usize) -> Option<[f64; 2]> {
+    /// Value less and plus its uncertainty (mesh error and what is assumed) at a row; of several runs of their medians.
+    pub(super) fn uncertainty(&self, measure: &Column, row: usize) -> Option<[f64; 2]> {
         let errors = columns_of_error(self.table, &measure.name)?;
         let value = measured(self.table, measure, row)?;
-        let [below, above] = error_at(self.table, errors, row)?;
+        let error = error_at(self.table, errors, row)?;
+        let assumed = columns_of_assumed(self.table, &measure.name)
+            .and_then(|columns| error_at(self.table, columns, row));
+        let [below, above] = together(error, assumed);
         Some([value - below, value + above])
     }
 
-    /// The legend of mesh errors; `None` where no row has one.
-    pub(super) fn mesh_error_legend(&self, measure: &Column) -> Option<Legend> {
-        let has_error = self.rows.iter().any(|row| self.mesh_error(measure, *row).is_some());
-        let meaning = format!("against n {}, 19 of 20 runs", MeshErrors::shipped().finest);
+    /// The legend of uncertainties; `None` where no row has one.
+    pub(super) fn uncertainty_legend(&self, measure: &Column) -> Option<Legend> {
+        let has_error = self.rows.iter().any(|row| self.uncertainty(measure, *row).is_some());
+        let finest = MeshErrors::shipped().finest;
+        let meaning = format!("mesh (to n {finest}, 19 of 20 runs) and what is assumed");
         let outside = self.table.column(NO_ERROR_REASON).is_some_and(|reasons| {
-            let has_error = |row: &&usize| self.mesh_error(measure, **row).is_some();
+            let has_error = |row: &&usize| self.uncertainty(measure, **row).is_some();
             self.rows.iter().filter(has_error).any(|row| reasons.cells[*row] != Value::Null)
         });
         let other = "; outside the table from three meshes, or pilots";
         let meaning = format!("{meaning}{}", if outside { other } else { "" });
         let entries = vec![(Sample::Error, meaning)];
-        has_error.then(|| Legend { heading: "Mesh error".to_owned(), entries })
+        has_error.then(|| Legend { heading: "Uncertainty".to_owned(), entries })
     }
 
     /// The single runs of the chart; of several meshes those on the finest one.

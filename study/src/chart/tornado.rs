@@ -112,7 +112,7 @@ pub fn svg(source: &Source<'_>, measure: &str) -> Result<String> {
         line.marks.push(([at, unit.shown(value)], outcomes.mark(*row)));
         line.texts
             .push(([at, unit.shown(value)], relative(&text, base.filter(|_| !is_signed), value)));
-        line.errors.extend(source.mesh_error(column, *row).map(ends));
+        line.errors.extend(source.uncertainty(column, *row).map(ends));
         line.bars.extend(source.range(column, *row).map(ends));
         line.columns.extend(base.map(|base| ends([base, value])));
     }
@@ -133,7 +133,7 @@ pub fn svg(source: &Source<'_>, measure: &str) -> Result<String> {
     let name = Name::of_quantity(&column.name, &column.meaning);
     let panels = vec![panel];
     let mut legends: Vec<Legend> = source.runs_legend(Sample::Bar, &panels).into_iter().collect();
-    legends.extend(source.mesh_error_legend(column));
+    legends.extend(source.uncertainty_legend(column));
     legends.push(outcomes.legend(false));
     legends.extend(bound.map(|bound| bound.legend()));
     let mut subtitle = source.subtitle();

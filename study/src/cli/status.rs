@@ -158,7 +158,7 @@ impl<'a> Status<'a> {
     fn text(&self) -> String {
         let Self { stored, counts, .. } = self;
         let state = match (self.running, counts.of(JobStatus::Pending)) {
-            (true, _) => "running: another process holds its lock",
+            (true, _) => "running, by another process",
             (false, 0) => "finished",
             (false, _) => "not running",
         };
@@ -257,7 +257,7 @@ impl<'a> Status<'a> {
 
     /// The first fault of the journal, or that there is none.
     fn broken(&self) -> String {
-        let Some(first) = self.faults.first() else { return "nothing of the journal".to_owned() };
+        let Some(first) = self.faults.first() else { return "nothing".to_owned() };
         let more = match self.faults.len() - 1 {
             0 => String::new(),
             more => format!(", and {more} more"),

@@ -7,7 +7,7 @@ use crate::input::value::{Value, brief_number};
 use crate::job::result_limit::{Condition, Judged, Safety};
 use crate::print::range;
 
-/// The value, as in `peak_vz 18.6 −2.1 +0.8 m/s (mesh −2.1 +0.7, assumed 0.4), 7 % below 20 m/s`; with the least and the
+/// The value, as in `peak_vz 18.6 −2.1 +0.8 m/s (mesh −2.1 +0.7, assumed −0.3 +0.4), 7 % below 20 m/s`; with the least and the
 /// largest value over the `seeds`, SI, as in a table: `18.6 [18.1 to 18.9] −2.1 +0.8 m/s`.
 pub fn at_limit(one: &AtLimit, seeds: Option<[f64; 2]>) -> String {
     let name = one.limit.measure.name();
@@ -22,11 +22,12 @@ pub fn at_limit(one: &AtLimit, seeds: Option<[f64; 2]>) -> String {
     let mut text =
         format!("{name} {} {}", range::text(value, ends, one.uncertainty, unit), unit.symbol());
     text.truncate(text.trim_end().len());
-    if let (Some([below, above]), Some(assumed)) = (one.mesh_error, one.assumed) {
-        let [below, above, assumed] =
-            [below, above, assumed].map(|part| brief_number(difference.number(part)));
-        let mesh = if below == above { below } else { format!("−{below} +{above}") };
-        let _ = write!(text, " (mesh {mesh}, assumed {assumed})");
+    if let (Some(mesh), Some(assumed)) = (one.mesh_error, one.assumed) {
+        let sides = |sides: [f64; 2]| {
+            let [below, above] = sides.map(|side| brief_number(difference.number(side)));
+            if below == above { below } else { format!("−{below} +{above}") }
+        };
+        let _ = write!(text, " (mesh {}, assumed {})", sides(mesh), sides(assumed));
     }
     if let (Condition::Bound { bound, .. }, Some(judged)) = (&one.limit.condition, one.judged) {
         let side = if value < *bound { "below" } else { "above" };

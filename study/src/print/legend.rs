@@ -60,7 +60,7 @@ pub fn mesh_errors(shown: bool, table: &Table, meshes: &Meshes) -> Vec<String> {
     if shown && reasons().any(|reason| *reason == Value::Null) {
         let finest = MeshErrors::shipped().finest;
         notes.push(format!(
-            "− and +, or ±: mesh error, how far below and above it the value at {finest} subdivisions may be; 19 of 20 runs of the table of mesh errors keep it; what is assumed is beside it (<measure>_assumed), and limits count both"
+            "− and +, or ±: how far below and above it the value may be, by mesh error (to {finest} subdivisions, kept by 19 of 20 runs) and by what is assumed; limits count both; parts: <measure>_error_below, _error_above, _assumed_below, _assumed_above"
         ));
     }
     let texts = reasons().filter_map(|cell| match cell {

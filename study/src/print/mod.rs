@@ -6,7 +6,8 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
-use crate::analysis::compare::columns_of_error;
+use crate::accuracy::together;
+use crate::analysis::compare::{columns_of_assumed, columns_of_error};
 use crate::input::value::{Value, brief_number, json_value};
 use crate::job::proportion::Proportion;
 use crate::job::row::CellType;
@@ -85,8 +86,17 @@ pub fn fraction(value: f64, format: Format) -> Value {
 
 /// Ends of the names of columns that a table for a reader shows in the cell of another column: the smallest and the
 /// largest value, the number of all and the interval of a proportion, the mesh error.
-const PARTS: [&str; 7] =
-    ["_least", "_largest", "_of", "_low", "_high", "_error_below", "_error_above"];
+const PARTS: [&str; 9] = [
+    "_least",
+    "_largest",
+    "_of",
+    "_low",
+    "_high",
+    "_error_below",
+    "_error_above",
+    "_assumed_below",
+    "_assumed_above",
+];
 
 /// Whether a reader sees a column in the cell of another one.
 pub fn is_part(table: &Table, column: &Column) -> bool {
@@ -96,12 +106,13 @@ pub fn is_part(table: &Table, column: &Column) -> bool {
 }
 
 /// The cells of a column as a reader sees them, in its unit: the first digits of a job id, a value with its range and
-/// its mesh error, k of n with its interval.
+/// its uncertainty (mesh error and what is assumed), k of n with its interval.
 pub fn shown_cells(table: &Table, column: &Column, rows: &[usize]) -> Vec<Value> {
     let part = |end: &str| table.column(&format!("{}{end}", column.name));
     let (least, largest, of) = (part("_least"), part("_largest"), part("_of"));
     let error = part("_error_below").zip(part("_error_above")).map(<[&Column; 2]>::from);
     let error = error.or_else(|| columns_of_error(table, &column.name));
+    let assumed = columns_of_assumed(table, &column.name);
     let number = |part: Option<&Column>, row: usize| match part?.cells[row] {
         Value::Number(number) => Some(number),
         _ => None,
@@ -114,9 +125,10 @@ pub fn shown_cells(table: &Table, column: &Column, rows: &[usize]) -> Vec<Value>
         }
         Value::Number(value) => {
             let ends = number(least, *row).zip(number(largest, *row));
-            let sides = error.and_then(|[below, above]| {
+            let both = |[below, above]: [&Column; 2]| {
                 Some([number(Some(below), *row)?, number(Some(above), *row)?])
-            });
+            };
+            let sides = error.and_then(both).map(|error| together(error, assumed.and_then(both)));
             match (ends, sides) {
                 (None, None) => Value::Number(column.shown.number(*value)),
                 (ends, error) => Value::Text(range::text(*value, ends, error, &column.shown)),

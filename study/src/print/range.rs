@@ -3,7 +3,7 @@
 use crate::input::units::DisplayUnit;
 use crate::input::value::short_number;
 
-/// What is between a value and its mesh error.
+/// What is between a value and its uncertainty.
 const PLUS_MINUS: &str = " ± ";
 /// Significant digits of a cell, at least. More are shown where the range would vanish otherwise.
 const MIN_DIGITS: usize = 3;
@@ -12,6 +12,8 @@ const MAX_DIGITS: usize = 6;
 /// Significant digits of a value without a range.
 const DIGITS_ALONE: usize = 4;
 
+/// Power of ten of an error whose digits are all written, at most.
+const MAX_EXPONENT: i32 = 4;
 /// Decimals of a value with an error, at most.
 const MAX_DECIMALS: usize = 9;
 
@@ -20,7 +22,7 @@ fn rounded(number: f64, digits: usize) -> f64 {
     format!("{number:.*e}", digits.saturating_sub(1)).parse().unwrap_or(number)
 }
 
-/// A value in a unit, without the unit, with its smallest and largest value and its mesh error below and above it:
+/// A value in a unit, without the unit, with its smallest and largest value and its uncertainty below and above it:
 /// "12.3 [11.9 to 13.1] ± 0.4", "12.3 −0.6 +0.2". Equal values are one number.
 pub fn text(
     value: f64,
@@ -55,6 +57,10 @@ fn with_error(value: f64, sides: [f64; 2], unit: &DisplayUnit) -> (String, Strin
     let exponent =
         scientific.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok());
     let (value, [below, above]) = match exponent {
+        Some(exponent) if exponent > MAX_EXPONENT && largest.is_finite() => {
+            let short = |number: f64| short_number(rounded(number, 2));
+            (short_number(rounded(shown, DIGITS_ALONE)), sides.map(short))
+        }
         Some(exponent) if largest > 0.0 && largest.is_finite() => {
             let decimals = usize::try_from(1 - exponent).unwrap_or(0);
             if decimals > MAX_DECIMALS {
@@ -101,6 +107,7 @@ mod tests {
         assert_eq!(shown(1234.5, [210.0; 2], &seconds), "1234 ± 210");
         assert_eq!(shown(25.269, [1.0; 2], &seconds), "25.3 ± 1.0");
         assert_eq!(shown(1.0, [0.0; 2], &seconds), "1");
+        assert_eq!(shown(2.4e7, [13_284_708.0, 18_211_422.0], &seconds), "2.4e7 −1.3e7 +1.8e7");
         assert_eq!(shown(23.638, [6.31, 0.82], &seconds), "23.6 −6.3 +0.8");
         assert_eq!(shown(0.184_664, [0.0, 0.009_12], &milliseconds), "184.7 −0.0 +9.1");
         assert_eq!(

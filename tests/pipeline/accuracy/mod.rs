@@ -62,7 +62,8 @@ fn a_limit_counts_as_met_only_beyond_the_uncertainty_of_the_measure() {
     let number = |name: &str| first[name].as_f64().unwrap();
     let speed = number("peak_speed");
     let [below, above] = ["below", "above"].map(|side| {
-        number(&format!("peak_speed_error_{side}")).hypot(number("peak_speed_assumed"))
+        number(&format!("peak_speed_error_{side}"))
+            .hypot(number(&format!("peak_speed_assumed_{side}")))
     });
     assert!(
         below > 0.0 && above > 0.0 && below.max(above) < 0.5 * speed,

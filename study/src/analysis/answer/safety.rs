@@ -6,8 +6,8 @@ use super::{Extreme, named, parameters_of};
 use crate::analysis::at_limit::AtLimit;
 use crate::analysis::replicates::Condensed;
 use crate::input::units::DisplayUnit;
-use crate::job::result_limit::ResultLimit;
 use crate::job::result_limit::Safety::{Safe, Uncertain, Unsafe};
+use crate::job::result_limit::{Condition, ResultLimit};
 use crate::store::table::Table;
 
 /// The points by the limits of the study.
@@ -24,6 +24,9 @@ pub struct Safety {
     /// For each missed limit its measure and the number of points that miss it, the most frequent first.
     #[serde(serialize_with = "named")]
     pub missed: Vec<(String, usize)>,
+    /// What makes most of the uncertainty of the points that are within it, and their number, the most frequent first.
+    #[serde(serialize_with = "named")]
+    pub mostly: Vec<(String, usize)>,
 }
 
 /// A run near a limit. The value of `run` is the margin.
@@ -72,6 +75,16 @@ impl Safety {
         let mut missed: Vec<(String, usize)> = missed.filter(|(_, points)| *points > 0).collect();
         missed.sort_by_key(|(_, points)| std::cmp::Reverse(*points));
         let all: Vec<usize> = points.feasible().collect();
+        let uncertain = all.iter().filter(|point| points.safety(**point) == Some(Uncertain));
+        let mut mostly: Vec<(String, usize)> = Vec::new();
+        for point in uncertain {
+            let Some(cause) = cause(table, limits, &points, *point) else { continue };
+            match mostly.iter_mut().find(|(known, _)| *known == cause) {
+                Some((_, count)) => *count += 1,
+                None => mostly.push((cause.to_owned(), 1)),
+            }
+        }
+        mostly.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
         let safe = |point: &usize| points.safety(*point) == Some(Safe);
         let margins =
             all.iter().copied().filter(safe).filter_map(|p| margin(table, limits, &points, p));
@@ -81,8 +94,33 @@ impl Safety {
             counts: SafeCounts::of(&points, &all),
             nearest: nearest.or_else(|| safest(table, limits, &points, &all)),
             missed,
+            mostly,
         })
     }
+}
+
+/// What makes most of the uncertainty of a point: of the run with the smallest margin the larger part towards its
+/// limit, or that runs differ.
+fn cause(
+    table: &Table,
+    limits: &[ResultLimit],
+    points: &Condensed,
+    point: usize,
+) -> Option<&'static str> {
+    let nearest = margin(table, limits, points, point)?.limit;
+    let judged = nearest.judged?;
+    let differs = |row: &usize| {
+        table.judge(&nearest.limit, *row).is_some_and(|other| other.met != judged.met)
+    };
+    if points.runs[point].finest.iter().any(differs) {
+        return Some("seeds");
+    }
+    let Condition::Bound { above, .. } = nearest.limit.condition else { return None };
+    let (Some(mesh), Some(assumed)) = (nearest.mesh_error, nearest.assumed) else {
+        return Some("mesh error not known");
+    };
+    let towards = usize::from(above != judged.met);
+    Some(if assumed[towards] > mesh[towards] { "what is assumed" } else { "mesh" })
 }
 
 impl SafeCounts {

@@ -29,7 +29,7 @@ mod sets;
 mod tally;
 mod tolerance;
 
-pub use super::values::{canonical, columns_of_error, error_at, measured};
+pub use super::values::{canonical, columns_of_assumed, columns_of_error, error_at, measured};
 pub use comparison::Comparison;
 pub use sets::{Pair, Set, Sets, block, pairs};
 pub use tally::{Tally, pairs_of_jobs, tallies};

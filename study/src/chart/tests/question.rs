@@ -113,7 +113,7 @@ fn a_margin_has_its_zero_line_and_a_far_limit_a_note() {
         &[
             "Smallest margin of the limits over mass flow rate",
             "limit",
-            "not safe; above 0: every limit is met",
+            "missed by its value; above 0: every limit is met, uncertainty not counted",
             "The margin of verdict is 1 if the limit is met, −1 if not.",
         ],
     );
@@ -194,8 +194,14 @@ fn a_run_at_a_bound_that_is_not_allowed_is_marked_as_one_beyond_it() {
     for (measure, text) in [
         ("safe", "misses peak_vz < 25 m/s (1)"),
         ("peak_vz", "misses the limit (peak_vz < 25 m/s)"),
-        ("margin_peak_vz", "not safe; above 0: peak_vz < 25 m/s"),
-        ("smallest_margin", "not safe; above 0: every limit is met"),
+        (
+            "margin_peak_vz",
+            "missed by its value; above 0: peak_vz < 25 m/s, uncertainty not counted",
+        ),
+        (
+            "smallest_margin",
+            "missed by its value; above 0: every limit is met, uncertainty not counted",
+        ),
     ] {
         assert!(contains(&draw(false, measure), text), "{measure}: {:?}", draw(false, measure));
         let allowed = draw(true, measure);

@@ -108,8 +108,13 @@ pub fn print_next(answer: &Answer, root: &Path, out: &mut dyn Write) -> io::Resu
         writeln!(out, "           billow table {root} --borders")?;
     }
     if answer.safety.as_ref().is_some_and(|safety| safety.counts.uncertain > 0) {
-        // It names methods with smaller errors.
-        writeln!(out, "           billow plan {root}/study.json --accuracy \"15 %\"")?;
+        if answer.searches.is_some() {
+            // A search judges single runs: it has no values from two meshes.
+            writeln!(out, "           billow plan {root}/study.json --set design.subdivisions=8")?;
+        } else {
+            // It names methods with smaller errors.
+            writeln!(out, "           billow plan {root}/study.json --accuracy \"15 %\"")?;
+        }
     }
     // Compare a named choice (a strategy) first, then a quantity with a unit.
     let ranked = answer.comparisons.iter().filter_map(|(_, ranking)| ranking.as_ref().ok());

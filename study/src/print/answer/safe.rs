@@ -88,7 +88,12 @@ pub(super) fn safe(safety: &Safety) -> String {
         let missed: Vec<String> = missed
             .map(|(measure, points)| format!("{measure} ({})", count(*points, "point")))
             .collect();
-        let _ = write!(all, "; missed most often: {}", missed.join(", "));
+        let _ = write!(all, "; most values beyond a limit: {}", missed.join(", "));
+    }
+    if !safety.mostly.is_empty() {
+        let causes = safety.mostly.iter().map(|(cause, points)| format!("{cause} ({points})"));
+        let causes: Vec<String> = causes.collect();
+        let _ = write!(all, "; most of the uncertainty is: {}", causes.join(", "));
     }
     if let Some(nearest) = &safety.nearest {
         let what = if nearest.run.value < 0.0 {

@@ -203,7 +203,7 @@ impl Table {
     /// The value of a row on the finest mesh with its mesh error, where a coarser mesh has no value.
     fn of_one_mesh(&self, row: usize, promised: &Promised) -> Extrapolated {
         let Value::Number(value) = self.value(promised.measure, row)? else { return None };
-        Some((*value, self.error_parts(promised.measure, row).0))
+        Some((*value, self.error_parts(promised.measure, row)[0]))
     }
 
     /// A measure of a trusted run; the state at the end only where the capsule is deployed.

@@ -65,20 +65,21 @@ impl Table {
     }
 
     /// Mesh error of the value that a row stands for, below and above it, and its change over the ranges of the assumed
-    /// values, SI.
-    pub fn error_parts(&self, measure: ColumnId, row: usize) -> (Option<[f64; 2]>, Option<f64>) {
+    /// values likewise, SI.
+    pub fn error_parts(&self, measure: ColumnId, row: usize) -> [Option<[f64; 2]>; 2] {
         let number = |name: &str| match self.column(name)?.cells[row] {
             Value::Number(number) => Some(number),
             _ => None,
         };
-        let Some(promised) = promise(measure.name()) else { return (None, None) };
+        let Some(promised) = promise(measure.name()) else { return [None; 2] };
         let [value, below, above] = names(measure.name());
         let [below, above] = if number(&value).is_some() {
             [number(&below), number(&above)]
         } else {
             promised.error_columns.map(number)
         };
-        (below.zip(above).map(<[f64; 2]>::from), number(promised.assumed_column))
+        let [less, more] = promised.assumed_columns.map(number);
+        [below.zip(above), less.zip(more)].map(|sides| sides.map(<[f64; 2]>::from))
     }
 
     /// Uncertainty of the value that a row stands for, SI, below and above it; `None` where it is not known.

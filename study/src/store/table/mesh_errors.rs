@@ -31,8 +31,9 @@ pub(super) fn columns(
         let kind = (CellType::Number, promised.measure.column().unit);
         for (part, (name, meaning)) in promised.columns().into_iter().enumerate() {
             let cells = all.iter().map(|row| {
-                let [below, above] = row.errors[index].map_or([None; 2], |sides| sides.map(Some));
-                number([below, above, row.assumed[index]][part])
+                let [errors, assumed] = [row.errors[index], row.assumed[index]]
+                    .map(|sides| sides.map_or([None; 2], |sides| sides.map(Some)));
+                number([errors[0], errors[1], assumed[0], assumed[1]][part])
             });
             columns.push(Column::new(name, kind, meaning, cells.collect()));
         }
