@@ -4,6 +4,7 @@ use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shell::Shell;
 use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::mechanics::resultants::stretches;
+use billow_solver::scene::IntegratorKind;
 use nalgebra::Vector3;
 use serde_json::{Value as Json, json};
 
@@ -49,9 +50,12 @@ pub fn report(scene: &SceneFile) -> Json {
     if let Ok(model) = FilmModel::of_shell(&scene.film.film.elastic(), shell) {
         let stretch = stretches(&model, &Field::of(&shell.positions)).map(|(stretch, _)| stretch);
         report["stretch"] = json!({"start": stretch});
-        let step = 2.0 * scene.film.solver.cfl / model.largest_frequency();
-        report["step"] = json!(step);
-        report["steps"] = json!(libm::ceil(scene.film.solver.end_time / step));
+        let solver = &scene.film.solver;
+        if !solver.statics && solver.integrator == IntegratorKind::Explicit {
+            let step = 2.0 * solver.cfl / model.largest_frequency();
+            report["step"] = json!(step);
+            report["steps"] = json!(libm::ceil(solver.end_time / step));
+        }
     }
     report
 }

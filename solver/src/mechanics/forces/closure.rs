@@ -26,8 +26,12 @@ pub fn stiffness(nodes: &ClosureNodes, positions: &Field, pressure: f64, out: &m
 
 fn of_patch(patch: &Patch, positions: &Field, pressure: f64, out: &mut DMatrix<f64>) {
     let to_coarse = to_coarse(patch, positions);
-    let follower = |node: u32| patch.followers.iter().find(|follower| follower.node == node);
-    let on_rim = |node: u32| patch.rim.iter().position(|rim| rim.node == node);
+    // Both ascend.
+    let follower = |node: u32| {
+        let found = patch.followers.binary_search_by_key(&node, |follower| follower.node);
+        found.ok().map(|index| &patch.followers[index])
+    };
+    let on_rim = |node: u32| patch.rim.binary_search_by_key(&node, |rim| rim.node).ok();
     let mut between = SMatrix::<f64, COARSE, COARSE>::zeros();
     let mut across = DMatrix::<f64>::zeros(COARSE, 3 * patch.rim.len());
     let mut along_normal = Vector3::zeros();

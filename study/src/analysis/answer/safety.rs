@@ -99,28 +99,36 @@ impl Safety {
     }
 }
 
-/// What makes most of the uncertainty of a point: of the run with the smallest margin the larger part towards its
-/// limit, or that runs differ.
+/// What makes most of the uncertainty of a point: of the value nearest to a limit that is within it the larger part towards
+/// that limit; or that runs differ.
 fn cause(
     table: &Table,
     limits: &[ResultLimit],
     points: &Condensed,
     point: usize,
 ) -> Option<&'static str> {
-    let nearest = margin(table, limits, points, point)?.limit;
+    let runs = &points.runs[point].finest;
+    let at = |row: &usize| {
+        limits.iter().map(|limit| AtLimit::of(table, limit, *row)).collect::<Vec<_>>()
+    };
+    let uncertain = |one: &AtLimit| one.judged.is_some_and(|judged| judged.safety() == Uncertain);
+    let margin = |one: &AtLimit| one.judged.map_or(f64::INFINITY, |judged| judged.margin.abs());
+    let nearest = runs.iter().flat_map(at).filter(uncertain);
+    let Some(nearest) = nearest.min_by(|a, b| margin(a).total_cmp(&margin(b))) else {
+        return Some("seeds");
+    };
     let judged = nearest.judged?;
     let differs = |row: &usize| {
         table.judge(&nearest.limit, *row).is_some_and(|other| other.met != judged.met)
     };
-    if points.runs[point].finest.iter().any(differs) {
+    if runs.iter().any(differs) {
         return Some("seeds");
     }
     let Condition::Bound { above, .. } = nearest.limit.condition else { return None };
-    let (Some(mesh), Some(assumed)) = (nearest.mesh_error, nearest.assumed) else {
-        return Some("mesh error not known");
-    };
+    let Some(mesh) = nearest.mesh_error else { return Some("mesh error not known") };
     let towards = usize::from(above != judged.met);
-    Some(if assumed[towards] > mesh[towards] { "what is assumed" } else { "mesh" })
+    let assumed = nearest.assumed.map_or(0.0, |sides| sides[towards]);
+    Some(if assumed > mesh[towards] { "what is assumed" } else { "mesh" })
 }
 
 impl SafeCounts {

@@ -16,6 +16,12 @@ use crate::platform::error::InputError;
 
 /// Pieces of which the nesting is looked at, at most: each is compared with each.
 const MAX_PIECES: usize = 64;
+/// Faces of a piece whose vertices are asked where they lie, at most.
+const MAX_VERTICES: usize = 16;
+
+/// Largest enclosed volume that counts as zero, as a fraction of A^(3/2) of the film's area A (chosen:
+/// far above rounding).
+pub(super) const ZERO_VOLUME: f64 = 1e-12;
 
 /// A connected piece of film with its closing faces.
 pub struct Piece {
@@ -23,6 +29,15 @@ pub struct Piece {
     pub faces: Vec<[u32; 3]>,
     /// Enclosed volume, m³; of an open piece that of the cone from its first vertex.
     pub volume: f64,
+    /// Area of its faces, m².
+    area: f64,
+}
+
+impl Piece {
+    /// Whether it encloses nothing, as layers that lie on each other do.
+    fn is_flat(&self) -> bool {
+        self.volume.abs() <= ZERO_VOLUME * self.area * self.area.sqrt()
+    }
 }
 
 /// Refuses a closed piece of several whose faces are wound inward, and notes one whose volume counts twice.
@@ -38,14 +53,20 @@ pub(super) fn check(
     let at = |node: u32| shape.shell.positions[node as usize];
     for (index, piece) in pieces.iter().enumerate() {
         let first = piece.faces[0][0];
-        let inside = |(other, piece): &(usize, &Piece)| {
-            *other != index && winding(piece, at(first), at).abs() > 0.5
+        let vertices = some_vertices(piece);
+        // Most vertices: those of a piece that stands on another one may lie on its face.
+        let inside = |(other, around): &(usize, &Piece)| {
+            let within = |node: &&u32| winding(around, at(**node), at).abs() > 0.5;
+            *other != index && 2 * vertices.iter().filter(within).count() > vertices.len()
         };
+        if piece.is_flat() {
+            continue;
+        }
         let around: Vec<usize> =
             pieces.iter().enumerate().filter(inside).map(|(other, _)| other).collect();
         let is_cavity = around.len() % 2 == 1;
         let vertex = shape.numbering.vertex(first).map_or(0, |vertex| vertex + 1);
-        let position: [f64; 3] = at(first).into();
+        let position: [f64; 3] = (at(first) + shape.numbering.origin).into();
         let place = format!(
             "piece {} of {} (with OBJ vertex {vertex}, counted from 1, at {position:?} m)",
             index + 1,
@@ -72,15 +93,9 @@ pub(super) fn check(
 /// The pieces, in the order of their first face.
 pub fn pieces(shell: &Shell) -> Vec<Piece> {
     let mut first: Vec<usize> = (0..shell.positions.len()).collect();
-    let root = |first: &[usize], mut node: usize| {
-        while first[node] != node {
-            node = first[node];
-        }
-        node
-    };
     let faces = || shell.triangles.iter().chain(&shell.closure);
     for face in faces() {
-        let [a, b, c] = face.map(|node| root(&first, node as usize));
+        let [a, b, c] = face.map(|node| root(&mut first, node as usize));
         let least = a.min(b).min(c);
         for node in [a, b, c] {
             first[node] = least;
@@ -89,9 +104,9 @@ pub fn pieces(shell: &Shell) -> Vec<Piece> {
     let mut index: Vec<Option<usize>> = vec![None; first.len()];
     let mut pieces: Vec<Piece> = Vec::new();
     for face in faces() {
-        let root = root(&first, face[0] as usize);
+        let root = root(&mut first, face[0] as usize);
         let piece = *index[root].get_or_insert_with(|| {
-            pieces.push(Piece { faces: Vec::new(), volume: 0.0 });
+            pieces.push(Piece { faces: Vec::new(), volume: 0.0, area: 0.0 });
             pieces.len() - 1
         });
         pieces[piece].faces.push(*face);
@@ -103,8 +118,28 @@ pub fn pieces(shell: &Shell) -> Vec<Piece> {
             a.dot(&b.cross(&c))
         };
         piece.volume = piece.faces.iter().map(six).sum::<f64>() / 6.0;
+        let twice = |face: &[u32; 3]| {
+            let [a, b, c] = face.map(|node| shell.positions[node as usize]);
+            (b - a).cross(&(c - a)).norm()
+        };
+        piece.area = piece.faces.iter().map(twice).sum::<f64>() / 2.0;
     }
     pieces
+}
+
+/// The first node of the set that a node belongs to (union-find).
+fn root(first: &mut [usize], mut node: usize) -> usize {
+    while first[node] != node {
+        first[node] = first[first[node]];
+        node = first[node];
+    }
+    node
+}
+
+/// Vertices of a piece, evenly among its faces.
+fn some_vertices(piece: &Piece) -> Vec<u32> {
+    let every = piece.faces.len().div_ceil(MAX_VERTICES);
+    piece.faces.iter().step_by(every).flatten().copied().collect()
 }
 
 /// Winding number of a piece about a position, m.

@@ -9,6 +9,9 @@ use earcut::utils3d::project3d_to_2d;
 use earcut::{Earcut, refine};
 use nalgebra::Vector3;
 
+/// Least area of a triangle over that of its face. Chosen: above rounding.
+const MIN_AREA: f64 = 1e-9;
+
 /// The triangles of a face with these corners, as indices of them; `None` if it has no area or crosses itself.
 pub(super) fn triangles(corners: &[Vector3<f64>]) -> Option<Vec<[usize; 3]>> {
     let count = corners.len();
@@ -21,8 +24,9 @@ pub(super) fn triangles(corners: &[Vector3<f64>]) -> Option<Vec<[usize; 3]>> {
         return Some(fan(0));
     }
     let whole: Vector3<f64> = fan(0).into_iter().map(area).sum();
+    let least = MIN_AREA * whole.norm_squared();
     let covers = |triangles: &Vec<[usize; 3]>| {
-        triangles.len() == count - 2 && triangles.iter().all(|of| area(*of).dot(&whole) > 0.0)
+        triangles.len() == count - 2 && triangles.iter().all(|of| area(*of).dot(&whole) > least)
     };
     let turns_inward =
         |k: &usize| area([(k + count - 1) % count, *k, (k + 1) % count]).dot(&whole) < 0.0;

@@ -6,6 +6,7 @@ use billow_solver::scene::film_scene::Filling;
 use billow_solver::scene::film_support::FilmSupport;
 use billow_solver::scene::{GasSupply, HeatTransfer, InflowWindow};
 
+use super::components::ZERO_VOLUME;
 use super::shape::Shape;
 use super::{components, is_static, seams};
 use crate::input::json::Json;
@@ -154,10 +155,6 @@ fn windows(
     }
     Ok(windows)
 }
-
-/// Largest enclosed volume that counts as zero, as a fraction of A^(3/2) of the film's area A (chosen:
-/// far above rounding).
-const ZERO_VOLUME: f64 = 1e-12;
 
 /// Whether the film encloses no volume.
 fn encloses_nothing(shape: &Shape) -> bool {

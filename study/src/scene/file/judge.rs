@@ -56,7 +56,7 @@ fn size(film: &FilmScene) -> Option<String> {
     let size = (high - low).max();
     let (is, scale) = match size {
         size if size > MAX_SIZE => ("large", "1e-3 for millimetres"),
-        size if size < MIN_SIZE => ("large only", "1000 for kilometres"),
+        size if size < MIN_SIZE => ("large, no more", "1000 for kilometres"),
         _ => return None,
     };
     Some(format!(

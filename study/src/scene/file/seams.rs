@@ -1,10 +1,10 @@
 //! Free edges that lie on each other, or near each other, without being joined: film that leaks.
 //!
 //! ```text
-//! d < 0.01 L       d: distance of a vertex of a rim from another vertex or edge of a rim, L: mean length of free edges
+//! d < 0.001 L      d: distance of a vertex of a rim from another vertex or edge of a rim, L: shortest free edge there
 //! ```
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Vector3;
 
@@ -13,9 +13,9 @@ use crate::input::json::Json;
 use crate::input::source::{Source, shown};
 use crate::platform::error::InputError;
 
-/// Distance of rims that are not joined, over the mean length of free edges. Chosen: layers of folded film are farther
-/// apart, and what programs round or lose at a seam is less.
-const NEAR: f64 = 0.01;
+/// Distance of rims that are not joined, over the shortest free edge there. Chosen: the layers at the mouth of a flat bag
+/// are farther apart, and what programs round or lose at a seam is less.
+const NEAR: f64 = 1e-3;
 /// Part of an edge at each end that counts as its vertex.
 const END: f64 = 0.02;
 
@@ -35,7 +35,8 @@ pub(super) fn check(shape: &Shape, source: &Source) -> Result<(), InputError> {
     let Some(nearest) = gaps.iter().min_by(by_distance) else { return Ok(()) };
     let at_vertices: Vec<&Gap> = gaps.iter().filter(|gap| gap.other[0] == gap.other[1]).collect();
     let vertex = |node: u32| shape.numbering.vertex(node).map_or(0, |vertex| vertex + 1);
-    let position: [f64; 3] = shape.shell.positions[nearest.node as usize].into();
+    let position: [f64; 3] =
+        (shape.shell.positions[nearest.node as usize] + shape.numbering.origin).into();
     let (first, [a, b]) = (vertex(nearest.node), nearest.other.map(vertex));
     let places = gaps.iter().map(|gap| gap.node).collect::<BTreeSet<u32>>().len();
     let farthest = at_vertices.iter().max_by(|a, b| a.distance.total_cmp(&b.distance));
@@ -51,11 +52,11 @@ pub(super) fn check(shape: &Shape, source: &Source) -> Result<(), InputError> {
         (near, "make the vertex a corner of the face on the other side too".to_owned())
     };
     let problem = format!(
-        "leaks: free edges of the film are not joined, at {places} vertices; {near} are {} m apart, at {position:?} m",
+        "leaks: free edges of the film are not joined ({places} of their vertices); {near} are {} m apart, at {position:?} m",
         shown(nearest.distance)
     );
     let allowed = format!(
-        "film with its seams joined where there is pressure, or free edges at least {NEAR} of their length apart"
+        "film with its seams joined where there is pressure, or free edges at least {NEAR} of the shortest of them apart"
     );
     let file = Json::Text(shape.file.clone());
     Err(source.error("mesh.positions", file, problem, allowed).with_hint(hint))
@@ -70,18 +71,30 @@ fn gaps(shape: &Shape) -> Vec<Gap> {
         .iter()
         .flat_map(|nodes| (0..nodes.len()).map(|k| [nodes[k], nodes[(k + 1) % nodes.len()]]))
         .collect();
-    let length: f64 = edges.iter().map(|[a, b]| (at(*a) - at(*b)).norm()).sum();
-    let tolerance = NEAR * length / edges.len().max(1) as f64;
+    // The shortest free edge at each node.
+    let mut shortest: BTreeMap<u32, f64> = BTreeMap::new();
+    for [a, b] in &edges {
+        let length = (at(*a) - at(*b)).norm();
+        for node in [a, b] {
+            let known = shortest.entry(*node).or_insert(length);
+            *known = known.min(length);
+        }
+    }
+    let near = |length: f64| NEAR * length;
+    let widest = near(shortest.values().copied().fold(0.0, f64::max));
     let joined: BTreeSet<[u32; 2]> = edges.iter().flat_map(|&[a, b]| [[a, b], [b, a]]).collect();
-    let nodes: BTreeSet<u32> = edges.iter().flatten().copied().collect();
-    let mut by_x: Vec<u32> = nodes.into_iter().collect();
-    by_x.sort_by(|a, b| at(*a).x.total_cmp(&at(*b).x).then(a.cmp(b)));
+    // Along the axis in which the film is longest.
+    let [low, high] = shape.extents();
+    let axis = (high - low).imax();
+    let along_axis = |node: u32| at(node)[axis];
+    let mut sorted: Vec<u32> = shortest.keys().copied().collect();
+    sorted.sort_by(|a, b| along_axis(*a).total_cmp(&along_axis(*b)).then(a.cmp(b)));
     let mut gaps = Vec::new();
-    for (index, a) in by_x.iter().enumerate() {
-        let near = by_x[index + 1..].iter().take_while(|b| at(**b).x - at(*a).x < tolerance);
-        for b in near.filter(|b| !joined.contains(&[*a, **b])) {
+    for (index, a) in sorted.iter().enumerate() {
+        let others = sorted[index + 1..].iter();
+        for b in others.take_while(|b| along_axis(**b) - along_axis(*a) < widest) {
             let distance = (at(*a) - at(*b)).norm();
-            if distance < tolerance {
+            if distance < near(shortest[a].min(shortest[b])) && !joined.contains(&[*a, *b]) {
                 gaps.push(Gap { distance, node: *a, other: [*b, *b] });
             }
         }
@@ -89,18 +102,17 @@ fn gaps(shape: &Shape) -> Vec<Gap> {
     for [a, b] in edges {
         let (from, along) = (at(a), at(b) - at(a));
         let (low, high) =
-            (from.inf(&at(b)).add_scalar(-tolerance), from.sup(&at(b)).add_scalar(tolerance));
-        let first = by_x.partition_point(|node| at(*node).x < low.x);
-        let within = by_x[first..].iter().take_while(|node| at(**node).x <= high.x);
+            (along_axis(a).min(along_axis(b)) - widest, along_axis(a).max(along_axis(b)) + widest);
+        let first = sorted.partition_point(|node| along_axis(*node) < low);
+        let within = sorted[first..].iter().take_while(|node| along_axis(**node) <= high);
         for node in within.filter(|node| **node != a && **node != b) {
             let x: Vector3<f64> = at(*node);
-            let inside = (0..3).all(|axis| low[axis] <= x[axis] && x[axis] <= high[axis]);
             let part = (x - from).dot(&along) / along.norm_squared();
-            if !inside || !(END..1.0 - END).contains(&part) {
+            if !(END..1.0 - END).contains(&part) {
                 continue;
             }
             let distance = (x - from - along * part).norm();
-            if distance < tolerance {
+            if distance < near(shortest[node].min(along.norm())) {
                 gaps.push(Gap { distance, node: *node, other: [a, b] });
             }
         }

@@ -27,7 +27,7 @@ const PLANE_TOLERANCE: f64 = 1e-6;
 impl Plane {
     /// Reads the plane of a support.
     pub fn read(object: &Object<'_>, shape: &Shape) -> Result<Self, InputError> {
-        let point = object.needed_vector("point")?;
+        let point = object.needed_vector("point")? - shape.numbering.origin;
         let tolerance = match object.number("tolerance")? {
             Some(tolerance) => tolerance,
             None => PLANE_TOLERANCE * shape.size(),
@@ -52,18 +52,18 @@ pub(super) fn nodes(
     let positions = &shape.shell.positions;
     let all = film_nodes(shape);
     let within = |inside: &dyn Fn(Vector3<f64>) -> bool| -> Vec<u32> {
-        all.iter()
-            .copied()
-            .filter(|node| inside(positions[*node as usize] + shape.numbering.origin))
-            .collect()
+        all.iter().copied().filter(|node| inside(positions[*node as usize])).collect()
     };
     let (nodes, region) = match (on, plane) {
         ("box", _) => {
             let min = object.components("min")?;
             let max = object.components("max")?;
+            let origin = shape.numbering.origin;
             let inside = |x: Vector3<f64>| {
                 (0..3).all(|k| {
-                    min[k].is_none_or(|min| x[k] >= min) && max[k].is_none_or(|max| x[k] <= max)
+                    let of_run = |bound: f64| bound - origin[k];
+                    min[k].is_none_or(|min| x[k] >= of_run(min))
+                        && max[k].is_none_or(|max| x[k] <= of_run(max))
                 })
             };
             (within(&inside), "the box".to_owned())
