@@ -9,7 +9,7 @@ use serde_json::{Map, Value as Json, json};
 
 use crate::input::keys::listing::{FileKind, Parts};
 use crate::input::keys::{
-    self, Default, GRAVITY, KEYS, Key, KeyKind, NEAR, Quantity, RANGE_KEYS, SEARCH_KEYS,
+    self, Default, FORMULAS, GRAVITY, KEYS, Key, KeyKind, NEAR, Quantity, RANGE_KEYS, SEARCH_KEYS,
 };
 use crate::input::units::Dimension;
 use crate::input::value::{Value, json_value};
@@ -248,7 +248,9 @@ fn kind(key: &Key) -> Json {
         KeyKind::Quantity(quantity) => quantity_form(quantity),
         KeyKind::Integer(min, max) => json!({"type": "integer", "minimum": min, "maximum": max}),
         KeyKind::Choice(words) => {
-            json!({"enum": words.iter().map(|word| word.name).collect::<Vec<_>>()})
+            let names = || words.iter().map(|word| word.name);
+            let formulas = FORMULAS.iter().filter(|(_, name)| names().any(|known| known == *name));
+            json!({"enum": names().chain(formulas.map(|(formula, _)| *formula)).collect::<Vec<_>>()})
         }
         KeyKind::Text if key.path == "fix" => json!({"type": "string", "pattern": COMPONENTS}),
         KeyKind::Text => json!({"type": "string"}),

@@ -52,15 +52,22 @@ pub fn points(
 /// What gives an error where the table of mesh errors has none.
 pub const THREE_MESHES: &str = "\"solver\": {\"meshes\": [4, 6, 8]} gives one";
 
-/// What the mesh errors that are `shown` are, and where they come from outside the table of mesh errors: of values that
+/// The uncertainty that a table shows.
+pub const UNCERTAINTY: &str = "mesh error and what is assumed; limits count both; parts: <measure>_error_below, \
+     _error_above, _assumed_below, _assumed_above";
+/// The uncertainty that a comparison shows.
+pub const MESH_ERROR: &str =
+    "mesh error alone, since what is assumed moves both values of a pair alike";
+
+/// What the uncertainties that are `shown` are, and where they come from outside the table of mesh errors: of values that
 /// are extrapolated from several meshes.
-pub fn mesh_errors(shown: bool, table: &Table, meshes: &Meshes) -> Vec<String> {
+pub fn mesh_errors(shown: Option<&str>, table: &Table, meshes: &Meshes) -> Vec<String> {
     let mut notes = Vec::new();
     let reasons = || table.column(NO_ERROR_REASON).into_iter().flat_map(|one| one.cells.iter());
-    if shown && reasons().any(|reason| *reason == Value::Null) {
+    if let Some(shown) = shown.filter(|_| reasons().any(|reason| *reason == Value::Null)) {
         let finest = MeshErrors::shipped().finest;
         notes.push(format!(
-            "− and +, or ±: how far below and above it the value may be, by mesh error (to {finest} subdivisions, kept by 19 of 20 runs) and by what is assumed; limits count both; parts: <measure>_error_below, _error_above, _assumed_below, _assumed_above"
+            "− and +, or ±: how far below and above it the value at {finest} subdivisions may be, in 19 of 20 runs: {shown}"
         ));
     }
     let texts = reasons().filter_map(|cell| match cell {
@@ -68,7 +75,7 @@ pub fn mesh_errors(shown: bool, table: &Table, meshes: &Meshes) -> Vec<String> {
         _ => None,
     });
     let (known, gaps): (Vec<&str>, Vec<&str>) = texts.partition(|text| !is_unknown(text));
-    if shown && known.into_iter().any(is_of_pilots) {
+    if shown.is_some() && known.into_iter().any(is_of_pilots) {
         notes.push(
             "− and +, where the table does not reach: the largest error of the pilots (no_error_reason)"
                 .to_owned(),

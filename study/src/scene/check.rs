@@ -1,5 +1,7 @@
 //! What `billow solve --check` prints of a scene that it does not run: the film, its pieces, its free edges, its step.
 
+use std::collections::BTreeSet;
+
 use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shell::Shell;
 use billow_solver::mechanics::film_model::FilmModel;
@@ -15,8 +17,9 @@ use super::file::components::{Piece, pieces};
 pub fn report(scene: &SceneFile) -> Json {
     let shell = &scene.film.shell;
     let at = |node: u32| shell.positions[node as usize] + scene.numbering.origin;
-    let vertex = |node: u32| scene.numbering.vertex(node).map(|vertex| vertex + 1);
+    let vertex = |node: u32| scene.numbering.obj_vertex(node);
     let loops = shell.boundary();
+    let rims: BTreeSet<u32> = loops.iter().flatten().copied().collect();
     let of_loop = |nodes: &Vec<u32>| {
         let edges = (0..nodes.len()).map(|k| [nodes[k], nodes[(k + 1) % nodes.len()]]);
         let length: f64 = edges.map(|[a, b]| (at(a) - at(b)).norm()).sum();
@@ -28,8 +31,7 @@ pub fn report(scene: &SceneFile) -> Json {
     };
     let of_piece = |piece: &Piece| {
         let first = piece.faces[0][0];
-        let closed =
-            !loops.iter().flatten().any(|node| piece.faces.iter().flatten().any(|of| of == node));
+        let closed = !piece.faces.iter().flatten().any(|node| rims.contains(node));
         json!({
             "faces": piece.faces.len(), "volume": closed.then_some(piece.volume),
             "obj_vertex": vertex(first), "position": <[f64; 3]>::from(at(first)),

@@ -26,7 +26,7 @@ pub struct Safety {
     pub missed: Vec<(String, usize)>,
     /// What makes most of the uncertainty of the points that are within it, and their number, the most frequent first.
     #[serde(serialize_with = "named")]
-    pub mostly: Vec<(String, usize)>,
+    pub uncertain_by: Vec<(String, usize)>,
 }
 
 /// A run near a limit. The value of `run` is the margin.
@@ -76,15 +76,15 @@ impl Safety {
         missed.sort_by_key(|(_, points)| std::cmp::Reverse(*points));
         let all: Vec<usize> = points.feasible().collect();
         let uncertain = all.iter().filter(|point| points.safety(**point) == Some(Uncertain));
-        let mut mostly: Vec<(String, usize)> = Vec::new();
+        let mut uncertain_by: Vec<(String, usize)> = Vec::new();
         for point in uncertain {
             let Some(cause) = cause(table, limits, &points, *point) else { continue };
-            match mostly.iter_mut().find(|(known, _)| *known == cause) {
+            match uncertain_by.iter_mut().find(|(known, _)| *known == cause) {
                 Some((_, count)) => *count += 1,
-                None => mostly.push((cause.to_owned(), 1)),
+                None => uncertain_by.push((cause.to_owned(), 1)),
             }
         }
-        mostly.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        uncertain_by.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
         let safe = |point: &usize| points.safety(*point) == Some(Safe);
         let margins =
             all.iter().copied().filter(safe).filter_map(|p| margin(table, limits, &points, p));
@@ -94,7 +94,7 @@ impl Safety {
             counts: SafeCounts::of(&points, &all),
             nearest: nearest.or_else(|| safest(table, limits, &points, &all)),
             missed,
-            mostly,
+            uncertain_by,
         })
     }
 }

@@ -59,7 +59,8 @@ pub(super) fn print(
         let text = legend::points(rows, runs, replicates, meshes, MEDIANS);
         eprintln!("{text}; --runs pairs single runs");
     }
-    let shown = comparison.measures.iter().any(|measure| measure.errors.is_some());
+    let has_error = comparison.measures.iter().any(|measure| measure.errors.is_some());
+    let shown = has_error.then_some(legend::MESH_ERROR);
     let of_runs = Meshes::default();
     let meshes = if comparison.points.is_some() { meshes } else { &of_runs };
     for note in legend::mesh_errors(shown, comparison.table, meshes) {

@@ -183,7 +183,8 @@ fn notes(
         errors.is_some_and(|[below, _]| rows.iter().any(|row| below.cells[*row] != Value::Null))
     };
     let meshes = if args.runs { Meshes::default() } else { meshes };
-    notes.extend(legend::mesh_errors(columns.iter().any(has_error), table, &meshes));
+    let shown = columns.iter().any(has_error).then_some(legend::UNCERTAINTY);
+    notes.extend(legend::mesh_errors(shown, table, &meshes));
     notes
 }
 

@@ -29,8 +29,8 @@ pub use study_objects::{
 };
 pub use table::{SCENE, STUDY, Table, find, index, short_name, shortened};
 pub(crate) use words::{
-    CAPS, CHIRALITIES, FITS, INTEGRATORS, ISOTHERMAL, MODEL_KINDS, Named, PROFILES, RESIDUAL_GAS,
-    SHAPES, SPECIES, SUPPORT_PLACES, pick,
+    CAPS, CHIRALITIES, FITS, FORMULAS, INTEGRATORS, ISOTHERMAL, MODEL_KINDS, Named, PROFILES,
+    RESIDUAL_GAS, SHAPES, SPECIES, SUPPORT_PLACES, pick,
 };
 pub use words::{
     MODELS, Model, ResidualGas, Word, default_integrator, ignored_by_integrator, model,

@@ -90,8 +90,9 @@ pub(super) fn safe(safety: &Safety) -> String {
             .collect();
         let _ = write!(all, "; most values beyond a limit: {}", missed.join(", "));
     }
-    if !safety.mostly.is_empty() {
-        let causes = safety.mostly.iter().map(|(cause, points)| format!("{cause} ({points})"));
+    if !safety.uncertain_by.is_empty() {
+        let causes =
+            safety.uncertain_by.iter().map(|(cause, points)| format!("{cause} ({points})"));
         let causes: Vec<String> = causes.collect();
         let _ = write!(all, "; most of the uncertainty is: {}", causes.join(", "));
     }

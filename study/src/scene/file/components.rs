@@ -65,7 +65,7 @@ pub(super) fn check(
         let around: Vec<usize> =
             pieces.iter().enumerate().filter(inside).map(|(other, _)| other).collect();
         let is_cavity = around.len() % 2 == 1;
-        let vertex = shape.numbering.vertex(first).map_or(0, |vertex| vertex + 1);
+        let vertex = shape.numbering.obj_vertex(first);
         let position: [f64; 3] = (at(first) + shape.numbering.origin).into();
         let place = format!(
             "piece {} of {} (with OBJ vertex {vertex}, counted from 1, at {position:?} m)",

@@ -10,7 +10,7 @@ use billow_solver::mechanics::resultants::stretches;
 use billow_solver::scene::IntegratorKind;
 use billow_solver::scene::film_scene::FilmScene;
 
-use super::shape::Numbering;
+use super::shape::{Numbering, extents};
 use crate::input::source::{Source, shown};
 use crate::platform::error::InputError;
 
@@ -50,9 +50,7 @@ pub(super) fn notes(
 
 /// A film whose size suggests another unit.
 fn size(film: &FilmScene) -> Option<String> {
-    let first = *film.shell.positions.first()?;
-    let all = film.shell.positions.iter();
-    let (low, high) = all.fold((first, first), |(low, high), x| (low.inf(x), high.sup(x)));
+    let [low, high] = extents(&film.shell.positions);
     let size = (high - low).max();
     let (is, scale) = match size {
         size if size > MAX_SIZE => ("large", "1e-3 for millimetres"),

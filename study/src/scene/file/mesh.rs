@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use super::cut;
 use super::reader::Reader;
 use super::reference::{flat_key, flattened, reference};
-use super::shape::{Numbering, Shape};
+use super::shape::{Numbering, Shape, extents};
 use super::weld;
 use crate::input::json::Json;
 use crate::input::keys::MESH_KEYS;
@@ -97,9 +97,7 @@ const FAR: f64 = 100.0;
 
 /// The middle of a film that is far from the origin of its file, m; 0 of any other.
 fn origin(vertices: &[Vector3<f64>]) -> Vector3<f64> {
-    let Some(first) = vertices.first() else { return Vector3::zeros() };
-    let (low, high) =
-        vertices.iter().fold((*first, *first), |(low, high), x| (low.inf(x), high.sup(x)));
+    let [low, high] = extents(vertices);
     let middle = (low + high) * 0.5;
     if middle.norm() > FAR * (high - low).norm() { middle } else { Vector3::zeros() }
 }
@@ -186,7 +184,7 @@ pub(super) fn check_closure(
     let Err(error) = ClosureNodes::new(&film.shell, |node| supports.hold_fully(node)) else {
         return Ok(());
     };
-    let vertex = numbering.vertex(error.node).map_or(0, |vertex| vertex + 1);
+    let vertex = numbering.obj_vertex(error.node);
     let problem = format!(
         "OBJ vertex {vertex} (counted from 1) of its faces belongs to no film, and the rim of the faces does not \
          determine where it moves"
@@ -222,7 +220,7 @@ fn check_edges(shell: &Shell, numbering: &Numbering, file: &str, source: &Source
         let problem = error.to_string();
         return Err(refuse(file, "mesh.positions", problem, "", source).into());
     };
-    let [a, b] = edge.map(|node| numbering.vertex(node).map_or(0, |vertex| vertex + 1));
+    let [a, b] = edge.map(|node| numbering.obj_vertex(node));
     let problem = format!(
         "the edge between OBJ vertices {a} and {b} (counted from 1) belongs to more than two faces, or \
          to two that wind against each other"

@@ -34,7 +34,7 @@ pub(super) fn check(shape: &Shape, source: &Source) -> Result<(), InputError> {
     let by_distance = |a: &&Gap, b: &&Gap| a.distance.total_cmp(&b.distance);
     let Some(nearest) = gaps.iter().min_by(by_distance) else { return Ok(()) };
     let at_vertices: Vec<&Gap> = gaps.iter().filter(|gap| gap.other[0] == gap.other[1]).collect();
-    let vertex = |node: u32| shape.numbering.vertex(node).map_or(0, |vertex| vertex + 1);
+    let vertex = |node: u32| shape.numbering.obj_vertex(node);
     let position: [f64; 3] =
         (shape.shell.positions[nearest.node as usize] + shape.numbering.origin).into();
     let (first, [a, b]) = (vertex(nearest.node), nearest.other.map(vertex));

@@ -29,10 +29,7 @@ pub(super) struct Shape {
 impl Shape {
     /// Smallest and largest coordinates of the nodes, m.
     pub fn extents(&self) -> [Vector3<f64>; 2] {
-        let positions = &self.shell.positions;
-        let first = positions.first().copied().unwrap_or_default();
-        let (low, high) = positions.iter().fold((first, first), |(a, b), x| (a.inf(x), b.sup(x)));
-        [low, high]
+        extents(&self.shell.positions)
     }
 
     /// Largest extent of the film, m.
@@ -40,6 +37,13 @@ impl Shape {
         let [low, high] = self.extents();
         (high - low).max()
     }
+}
+
+/// Smallest and largest coordinates of positions, m; 0 of none.
+pub(super) fn extents(positions: &[Vector3<f64>]) -> [Vector3<f64>; 2] {
+    let first = positions.first().copied().unwrap_or_default();
+    let (low, high) = positions.iter().fold((first, first), |(a, b), x| (a.inf(x), b.sup(x)));
+    [low, high]
 }
 
 /// Maps the numbers of the user's mesh to those of the run: vertices to nodes, triangles (of faces,
@@ -84,6 +88,11 @@ impl Numbering {
             rest -= triangles;
         }
         "a face".to_owned()
+    }
+
+    /// The first vertex of a node as the file counts them, from 1; 0 for a node that is not in it.
+    pub fn obj_vertex(&self, node: u32) -> usize {
+        self.vertex(node).map_or(0, |vertex| vertex + 1)
     }
 
     /// The first vertex of a node.
