@@ -107,6 +107,13 @@ fn jobs_are_selected_by_id_prefix_and_formats_by_file_extension() {
     assert!(shown.iter().any(|text| text.contains("2 points")), "{shown:?}");
     folder.stdout(&[&arguments[..], &["two.png"]].concat());
     png_size(&folder.path().join("two.png"));
+    let both = folder.stdout(&[&arguments[..], &["pictures"]].concat());
+    assert!(
+        both.lines().all(|line| line.starts_with("pictures/")) && both.lines().count() == 2,
+        "{both}"
+    );
+    folder.stdout(&["chart", "grid", "--out", "all"]);
+    assert!(fs::read_dir(folder.path().join("all")).unwrap().count() > 2);
     assert!(!folder.results().join("charts").exists());
 }
 

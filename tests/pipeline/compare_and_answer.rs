@@ -108,6 +108,8 @@ fn an_answer_shows_what_is_limited_first_and_names_mixed_points() {
     let limit = format!("limits.peak_vz=\"< {} m/s\"", 0.5 * (speeds[0] + speeds[1]));
     let again = ["run", "grid.json", "-q", "--set", &limit];
     let said = folder.stdout(&again);
+    let headline = "  answer   no point is safe; 2 within the uncertainty\n  assumed ";
+    assert!(said.contains(headline), "{said}");
     assert!(said.contains("  mixed    mass_flow_rate=1 g/s: 0 of 2 safe, 1 unsafe\n"), "{said}");
     assert!(
         said.contains("mass_flow_rate=5 g/s: 0 of 2 safe, 1 unsafe\n  worst    peak_vz "),

@@ -9,6 +9,8 @@ use billow_study::study::plan::{Generation, PlanCounts, next_jobs};
 use billow_study::study::{MAX_POINTS, Study};
 use serde_json::{Value as Json, json};
 
+use crate::support::{TestFolder, stderr};
+
 fn try_study(json: &Json, sets: &[&str]) -> Result<Study, InputError> {
     let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
     Study::from_text(&json.to_string(), "test.json", "test", &sets, MAX_POINTS)
@@ -294,4 +296,18 @@ fn a_window_ends_when_its_mass_is_inside() {
     let both = study(json!({"from": "0.5 s", "to": "0.9 s", "mass": "2 g"}));
     let error = try_study(&both, &[]).unwrap_err().to_string();
     assert!(error.contains("strategies.fill.inflow[0].mass") && error.contains("both"), "{error}");
+}
+
+#[test]
+fn values_that_a_table_shows_alike_are_noted() {
+    let notes = |heights: Json| {
+        let planned = TestFolder::new(&with_grid(json!({ "height": heights })));
+        stderr(&planned.run(&["plan", "grid.json"]))
+    };
+    // 0.1 + 0.2 is not 0.3.
+    let said = notes(json!([0.1 + 0.2, 0.5, 0.3]));
+    let note =
+        "note: height has two values that a table shows as 0.3: 0.3 and 0.30000000000000004\n";
+    assert!(said.contains(note), "{said}");
+    assert!(!notes(json!([0.1, 0.3, 0.3001])).contains("shows as"));
 }

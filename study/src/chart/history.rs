@@ -99,7 +99,7 @@ pub fn svg(
     notes.extend(not_drawn(source));
     notes.extend(source.runs_notes(None));
     let mut legends = encoding.legends(false);
-    legends.extend(source.runs_legend(Sample::Band, &panels));
+    legends.extend(source.runs_legend("", Sample::Band, &panels));
     legends.push(ends(&stored));
     let limits = quantities.iter().flat_map(|quantity| &quantity.limits);
     let mut limits: Vec<_> = limits.map(|rule| (Sample::End, rule.text.clone())).collect();

@@ -70,7 +70,7 @@ pub fn svg(source: &Source<'_>, measure: &str, over: &str, by: &[String]) -> Res
         .collect();
     let mut legends = encoding.legends(positions.names);
     let range = if positions.names { Sample::Bar } else { Sample::Band };
-    legends.extend(source.runs_legend(range, &panels));
+    legends.extend(source.runs_legend(&measure.name, range, &panels));
     legends.extend(source.uncertainty_legend(measure));
     legends.push(drawing.outcomes.legend(false));
     legends.extend(bound.map(|bound| bound.legend()));

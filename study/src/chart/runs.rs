@@ -5,6 +5,7 @@ use crate::accuracy::{MeshErrors, NO_ERROR_REASON, together};
 use crate::analysis::compare::{columns_of_assumed, columns_of_error, error_at, measured};
 use crate::analysis::replicates::{self, Condensed, Runs, is_mesh};
 use crate::input::value::Value;
+use crate::job::row::DerivedColumn;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::plot::{Line, Panel};
 use crate::store::table::{Column, Table};
@@ -162,8 +163,13 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// The legend of medians and ranges, with this sample; `None` where no panel has a range.
-    pub(super) fn runs_legend(&self, sample: Sample, panels: &[Panel]) -> Option<Legend> {
+    /// The legend of the values of points and their ranges, with this sample; `None` where no panel has a range.
+    pub(super) fn runs_legend(
+        &self,
+        measure: &str,
+        sample: Sample,
+        panels: &[Panel],
+    ) -> Option<Legend> {
         let mut lines = panels.iter().flat_map(|panel| &panel.lines);
         let ranges = |line: &Line| {
             let mut ranges = line.bands.iter().flatten().chain(&line.bars);
@@ -172,7 +178,10 @@ impl<'a> Source<'a> {
         if !self.has_replicates() || !lines.any(ranges) {
             return None;
         }
-        let entries = vec![(sample, "median, and range from least to largest".to_owned())];
+        // The smallest margin of a point is the least of its runs.
+        let value =
+            if measure == DerivedColumn::SmallestMargin.name() { "least" } else { "median" };
+        let entries = vec![(sample, format!("{value}, and range from least to largest"))];
         Some(Legend { heading: "Runs of a point".to_owned(), entries })
     }
 }

@@ -132,7 +132,8 @@ pub fn svg(source: &Source<'_>, measure: &str) -> Result<String> {
     }
     let name = Name::of_quantity(&column.name, &column.meaning);
     let panels = vec![panel];
-    let mut legends: Vec<Legend> = source.runs_legend(Sample::Bar, &panels).into_iter().collect();
+    let mut legends: Vec<Legend> =
+        source.runs_legend(&column.name, Sample::Bar, &panels).into_iter().collect();
     legends.extend(source.uncertainty_legend(column));
     legends.push(outcomes.legend(false));
     legends.extend(bound.map(|bound| bound.legend()));

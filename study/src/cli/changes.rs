@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use crate::job::JobId;
-use crate::platform::error::Result;
+use crate::platform::error::{Error, Result};
 use crate::platform::provenance::PHYSICS_VERSION;
 use crate::scene::summary;
 use crate::store::results::Results;
@@ -115,12 +115,29 @@ pub fn note_before_run(results: &Results<'_>, study: &Study) -> Result<()> {
 /// Says on stderr which folder beside that of a study holds its jobs, where its folder holds none: the study or the folder
 /// has another name. A job is found by the name of its history, which is not read.
 pub fn note_elsewhere(results: &Results<'_>, study: &Study) {
-    if let Some(note) = elsewhere(results, study) {
-        eprintln!("note: {note}");
+    if let Some([other, uses]) = elsewhere(results, study) {
+        let empty = results.root().display();
+        eprintln!("note: {other}, {empty} holds none: to use them, give {uses}");
     }
 }
 
-fn elsewhere(results: &Results<'_>, study: &Study) -> Option<String> {
+/// Which folder beside that of a study holds its jobs, and what to give to use them.
+///
+/// # Errors
+/// [`Error::Disk`] where the folder of the study holds no results.
+pub fn find_elsewhere(results: &Results<'_>, study: &Study) -> Result<()> {
+    if results.owner()?.is_none()
+        && let Some([other, uses]) = elsewhere(results, study)
+    {
+        let problem = format!("no results here; {other}\n  next: give {uses}");
+        return Err(Error::Disk { path: results.root().to_owned(), problem });
+    }
+    note_elsewhere(results, study);
+    Ok(())
+}
+
+/// The folder that holds the jobs of a study, in words, and what to give to use them.
+fn elsewhere(results: &Results<'_>, study: &Study) -> Option<[String; 2]> {
     /// Jobs that are looked for, at most. Chosen: enough to recognise a study.
     const MAX_JOBS: usize = 16;
     let points = study.points().iter().filter(|point| point.infeasible.is_none());
@@ -139,8 +156,7 @@ fn elsewhere(results: &Results<'_>, study: &Study) -> Option<String> {
             .then(|| format!("--results {}", root.display())),
     ];
     let uses = uses.into_iter().flatten().collect::<Vec<_>>().join(" and ");
-    let (root, empty) = (root.display(), results.root().display());
-    Some(format!("{root} holds jobs of this study, {empty} holds none: to use them, give {uses}"))
+    Some([format!("{} holds jobs of this study", root.display()), uses])
 }
 
 /// What to know about finished jobs of other versions of the physics, by version; `None` without any.

@@ -70,6 +70,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
                     "1 history".to_owned()
                 } else {
                     format!("{} histories", health.histories)
+                } + &match health.checkpoints {
+                    0 => String::new(),
+                    number => format!(", {}", count(number, "checkpoint")),
                 },
                 count(health.findings.len(), "finding"),
             )

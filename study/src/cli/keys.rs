@@ -212,10 +212,10 @@ fn not_found(
     let lower = word.to_lowercase();
     let has =
         |entry: &KeyDescription| has_word(&entry.path, &lower) || has_word(&entry.meaning, &lower);
-    let hint = if !near.is_empty() {
-        format!("nearest: {}", near.join(", "))
-    } else if entries(other).iter().any(has) {
+    let hint = if entries(other).iter().any(has) {
         format!("the {} file has such a key: {command}", other.name())
+    } else if !near.is_empty() {
+        format!("nearest: {}", near.join(", "))
     } else {
         "billow keys prints every key".to_owned()
     };

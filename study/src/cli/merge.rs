@@ -100,11 +100,11 @@ fn print(folder: &Path, merged: &Merged, format: Format, out: &mut dyn Write) ->
     for point in stored.points.iter() {
         counts.add_cells(&stored.cells(point));
     }
-    let root = folder.display();
+    let root = crate::platform::quote::path(folder);
     if format == Format::Json {
         let json = serde_json::json!({
             "study": stored.study.name,
-            "results": root.to_string(),
+            "results": folder.display().to_string(),
             "copied": merged.copied,
             "same_bits": merged.same,
             "other_bits": merged.different.iter().map(JobId::as_str).collect::<Vec<_>>(),

@@ -82,7 +82,7 @@ pub struct UnitsOption {
     #[arg(long, help_heading = HEADING)]
     pub si: bool,
     /// Show these parameters and columns in these units, comma-separated, for example --units
-    /// "`t_90_z_rim=ms,mass_flow_rate=kg/h`".
+    /// `t_90_z_rim=ms,mass_flow_rate=kg/h`.
     #[arg(long, value_name = "NAME=UNIT", value_delimiter = ',', help_heading = HEADING)]
     pub units: Vec<String>,
 }

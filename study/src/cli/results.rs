@@ -10,6 +10,7 @@ use crate::input::value::Value;
 use crate::job::row::CellType;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{self, Disk, Files};
+use crate::print::count;
 use crate::store::journal::Fault;
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
@@ -53,7 +54,16 @@ pub fn open(
     if let (Some(asked), Some(path)) = (asked, &given.study) {
         let units = asked.display_units().clone();
         if let Some(study) = changes::other_limits(&stored, asked, path)? {
+            let finished = |of: &Stored<'_>| {
+                of.points.iter().filter(|point| of.record(&point.job.id).is_some()).count()
+            };
+            let all = finished(&stored);
             stored = stored.asked(study);
+            let hidden = all.saturating_sub(finished(&stored));
+            if hidden > 0 {
+                let runs = count(hidden, "finished run");
+                eprintln!("note: {runs} of the last run answered other limits and are not shown");
+            }
         }
         stored.units = units;
     }
@@ -118,7 +128,7 @@ fn note_faults(stored: &Stored<'_>) {
     if more > 0 {
         eprintln!("billow: damaged: {more} more lines of the journal");
     }
-    let root = results.root().display();
+    let root = crate::platform::quote::path(results.root());
     if journal.is_empty() && results.table_path().exists() {
         eprintln!(
             "billow: {root}: no journal: no job counts as finished\n  next: billow doctor {root}"
@@ -150,7 +160,7 @@ fn locate(given: &StudyArgs, set: &[String]) -> Result<(PathBuf, Option<Study>)>
         (None, None) => folder_of(given.study.as_deref())?,
     };
     if let Some(study) = &study {
-        changes::note_elsewhere(&Results::new(&Disk, &root), study);
+        changes::find_elsewhere(&Results::new(&Disk, &root), study)?;
     }
     Ok((root, study))
 }

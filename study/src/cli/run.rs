@@ -209,7 +209,7 @@ impl Ended<'_> {
         }
         if counts.jobs() == 0 {
             writeln!(out, "{name}: nothing to run, no fold pattern fits any of {points}")?;
-            let root = root.display();
+            let root = crate::platform::quote::path(root);
             writeln!(out, "  next     billow table {root} --columns job,reason,nearest")?;
         } else if summary.ran == 0 && counts.of(Status::Pending) == 0 {
             writeln!(out, "{name}: nothing to run, all {} jobs are finished", counts.jobs())?;

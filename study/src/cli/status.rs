@@ -157,10 +157,12 @@ impl<'a> Status<'a> {
 
     fn text(&self) -> String {
         let Self { stored, counts, .. } = self;
+        let started = counts.ended() > 0 || !self.checkpoints.is_empty();
         let state = match (self.running, counts.of(JobStatus::Pending)) {
             (true, _) => "running, by another process",
             (false, 0) => "finished",
-            (false, _) => "not running",
+            (false, _) if started => "interrupted; `billow run` of the study resumes it",
+            (false, _) => "not started",
         };
         let mut lines: Vec<TopicLine> = Vec::new();
         if !stored.study.question.is_empty() {
@@ -265,7 +267,10 @@ impl<'a> Status<'a> {
         if self.faults.iter().all(|fault| fault.torn) {
             return format!("{first}{more}; nothing else is lost, `billow run` runs it again");
         }
-        format!("{first}{more}; next: billow doctor {}", self.stored.results.root().display())
+        format!(
+            "{first}{more}; next: billow doctor {}",
+            crate::platform::quote::path(self.stored.results.root())
+        )
     }
 }
 
@@ -294,7 +299,7 @@ impl Submission {
             let ended = part.journal()?.records.into_keys();
             unmerged.extend(ended.filter(|id| stored.record(id).is_none()));
         }
-        let merge = format!("billow merge {}", results.root().display());
+        let merge = format!("billow merge {}", crate::platform::quote::path(results.root()));
         Ok(Self { queued, queue, unmerged: unmerged.len(), merge })
     }
 

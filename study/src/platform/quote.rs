@@ -1,6 +1,7 @@
 //! Text of a user in a message: cut to a length, and without characters that act on a terminal.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 /// Characters of a name or a value in a message (chosen: two of them and their problem take one line).
 pub const MAX_ECHO: usize = 60;
@@ -22,6 +23,26 @@ pub fn cut(text: &str, max: usize) -> String {
 /// A name or a value as a message shows it: at most [`MAX_ECHO`] characters, printable.
 pub fn echo(text: &str) -> String {
     cut(text, MAX_ECHO)
+}
+
+/// A text as one word of a shell command.
+pub fn word(text: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_' | '+' | '/');
+    if !text.is_empty() && text.chars().all(plain) {
+        return text.to_owned();
+    }
+    let text = printable(text);
+    // Within double quotes these act.
+    if text.contains(['"', '$', '`', '\\', '!']) {
+        format!("'{}'", text.replace('\'', r"'\''"))
+    } else {
+        format!("\"{text}\"")
+    }
+}
+
+/// A path as one word of a shell command.
+pub fn path(path: &Path) -> String {
+    word(&path.display().to_string())
 }
 
 /// Every line of a text cut to at most `max` characters, and printable.

@@ -90,6 +90,11 @@ impl Inflow<'_> {
                 ));
             }
             (Some(to), None) => to,
+            (None, Some(mass)) if mass > 0.0 && rate <= 0.0 => {
+                let problem = "the window lets in a mass at no rate, so it never lets in any";
+                let allowed = "a mass_flow_rate above 0, or no mass";
+                return Err(source.error(&format!("{path}.mass"), shown(mass), problem, allowed));
+            }
             (None, Some(mass)) if rate > 0.0 => from + mass / rate,
             (None, _) => end_time.max(from),
         };

@@ -161,7 +161,7 @@ impl Study {
             let error = source.error("format", "\"billow-scene\"", "is a scene, not a study", "");
             return Err(InputError { hint: format!("billow solve {file}"), ..error });
         }
-        let notes = overrides::apply(&mut tree, sets, &STUDY, &mut source)?;
+        let mut notes = overrides::apply(&mut tree, sets, &STUDY, &mut source)?;
         let settings = Settings::of_study(&tree, &source)?;
         let result_limits = result_limits::read(tree.get(LIMITS), &source)?;
         let assumed = assumed::read(tree.get("assumed"), &source)?;
@@ -172,6 +172,7 @@ impl Study {
         let units = units::read(&tree, &settings, &source)?;
         let (mut points, filtered) = expand::points(&settings, &grid, &source, max_points)?;
         meshes::refuse_other_models(&grid, &points, &source)?;
+        notes.extend(parameters::alike(&points));
         let pilots = pilots::meshes(&settings, &grid, &result_limits, &points);
         if pilots.is_some() {
             pilots::add_mesh(&settings, &mut grid, &mut points);

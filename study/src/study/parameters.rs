@@ -6,8 +6,9 @@ use crate::input::json::Json;
 use crate::input::keys::Key;
 use crate::input::source::Source;
 use crate::input::units::DisplayUnits;
-use crate::input::value::Value;
+use crate::input::value::{Value, short_number};
 use crate::job::Parameters;
+use crate::job::point::Point;
 
 /// A key of a study.
 #[derive(Debug, Clone)]
@@ -27,6 +28,24 @@ pub struct Zipped {
     pub name: String,
     /// The steps of the axis: value of the other parameter, value of this one.
     pub steps: Vec<(Value, Value)>,
+}
+
+/// Notes on parameters with different values that look the same in a table.
+pub(super) fn alike(points: &[Point]) -> Vec<String> {
+    let number = |point: &Point, index: usize| match point.job.parameters[index].1 {
+        Value::Number(number) => Some(number),
+        _ => None,
+    };
+    let names = points.first().map_or(&[][..], |point| &point.job.parameters).iter();
+    let of_parameter = |(index, (name, _)): (usize, &(String, Value))| {
+        let mut values: Vec<f64> = points.iter().filter_map(|point| number(point, index)).collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup_by(|a, b| a.total_cmp(b).is_eq());
+        let pair = values.windows(2).find(|pair| short_number(pair[0]) == short_number(pair[1]))?;
+        let (shown, [a, b]) = (short_number(pair[0]), [pair[0], pair[1]]);
+        Some(format!("{name} has two values that a table shows as {shown}: {a} and {b}"))
+    };
+    names.enumerate().filter_map(of_parameter).collect()
 }
 
 impl Study {

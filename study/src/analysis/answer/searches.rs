@@ -144,7 +144,8 @@ impl Found {
             SearchResult::Open => "open",
             SearchResult::Border { .. } => "border",
             SearchResult::NotMonotone(_) => "not_monotone",
-            SearchResult::NoChange { .. } => "no_change",
+            SearchResult::NoChange { met: true } => "always_met",
+            SearchResult::NoChange { met: false } => "never_met",
             SearchResult::Undecided => "undecided",
         }
     }
@@ -175,12 +176,10 @@ impl Found {
         self.border.levels.iter().map(of).sum()
     }
 
-    /// Whether the criterion is met below the border, or at every value.
+    /// Whether the criterion is met below the border.
     fn met_below(&self) -> Option<bool> {
         match self.border.outcome {
-            SearchResult::Border { met_below: met, .. } | SearchResult::NoChange { met } => {
-                Some(met)
-            }
+            SearchResult::Border { met_below, .. } => Some(met_below),
             _ => None,
         }
     }

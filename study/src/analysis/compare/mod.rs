@@ -179,6 +179,11 @@ impl<'a> Measure<'a> {
         Some(self.ranges.map_or([value; 3], |[least, largest]| [end(least), value, end(largest)]))
     }
 
+    /// Whether the mesh errors of both values of a pair decide whether they are equal.
+    pub fn has_errors(&self) -> bool {
+        self.errors.is_some()
+    }
+
     /// Whether two values are equal: within the tolerance, or because their ranges overlap.
     pub fn are_equal(&self, a: Range, b: Range) -> bool {
         self.tolerance.is_tie(a[1], b[1]) || (a[0] <= b[2] && b[0] <= a[2])

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{Basis, Candidate, Field, RankedMeasure, Ranking, penalty, ranked_points};
-use crate::analysis::compare::{Pair, Range, Set, Tally, median_range};
+use crate::analysis::compare::{Better, Pair, Range, Set, Tally, median_range};
 use crate::analysis::replicates::Runs;
 use crate::analysis::statistics::Spread;
 use crate::input::keys::numerical;
@@ -109,7 +109,12 @@ impl Field<'_> {
             Some(Tally::of(self.table, &pairs.collect::<Vec<_>>(), value, measure))
         };
         let range = |position: usize| found[position].1.ranges[index];
+        let against_best: Vec<Option<Tally>> = (0..found.len()).map(tally).collect();
         let equal = |position: usize| {
+            if let Some(tally) = against_best[position].as_ref().filter(|_| measure.has_errors()) {
+                // Pair by pair, as `compare` judges.
+                return tally.pairs() > 0 && tally.count(Better::Tie) == tally.pairs();
+            }
             let pair = best.and_then(range).zip(range(position));
             pair.is_some_and(|(best, range)| measure.are_equal(best, range))
         };
@@ -118,8 +123,8 @@ impl Field<'_> {
             tolerance: measure.tolerance,
             sets: sets.len(),
             best,
-            against_best: (0..found.len()).map(tally).collect(),
             equal: (0..found.len()).map(equal).collect(),
+            against_best,
         }
     }
 

@@ -1,7 +1,7 @@
 //! `billow chart`: draws charts of the results of a study, as SVG and PNG.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption, parameter_name};
 use super::picture::{self, Picture, refused};
@@ -99,8 +99,8 @@ pub struct Args {
     /// End of the time axis: s, or with a unit [default: soon after the last film has settled].
     #[arg(long, value_name = "TIME", requires = "history")]
     to: Option<String>,
-    /// File to write, .svg or .png [default: both, in the folder charts of the results].
-    #[arg(long, value_name = "FILE")]
+    /// File to write, .svg or .png, or folder for both [default: the folder charts of the results].
+    #[arg(long, value_name = "FILE|DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
     units: UnitsOption,
@@ -163,14 +163,16 @@ impl Args {
 /// Results that cannot be read; an unknown column or parameter; a picture that cannot be written.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let range = [time("--from", args.from.as_deref())?, time("--to", args.to.as_deref())?];
-    if let Some(path) = &args.out {
+    let out_file = args.out.as_deref().filter(|path| path.extension().is_some() && !path.is_dir());
+    if let Some(path) = out_file {
         Picture::of(path)?;
     }
     if !args.is_one() {
         let one = "one chart: --history, --measure or --borders";
-        if let Some(path) = &args.out {
+        if let Some(path) = out_file {
             let path = path.display().to_string();
-            return Err(refused("--out", &path, "one file for several charts", one));
+            let allowed = format!("{one}; or a folder");
+            return Err(refused("--out", &path, "one file for several charts", &allowed));
         }
         if let Some(title) = &args.title {
             return Err(refused("--title", title, "one title for several charts", one));
@@ -245,12 +247,12 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             }
             svg => svg?,
         };
-        match &args.out {
-            Some(path) => {
-                picture::write(path, &svg)?;
-                written.push(path.clone());
-            }
-            None => written.extend(write(results, &kind.file_name(), &svg)?),
+        if let Some(path) = out_file {
+            picture::write(path, &svg)?;
+            written.push(path.to_owned());
+        } else {
+            let folder = args.out.clone().unwrap_or_else(|| results.charts_path());
+            written.extend(write(&folder, &kind.file_name(), &svg)?);
         }
     }
     print(&written, args.output.format(), out)
@@ -286,9 +288,8 @@ fn study_name(results: &Results<'_>) -> String {
 }
 
 /// Writes a chart in every format to the folder of charts. Returns the paths.
-fn write(results: &Results<'_>, name: &str, svg: &str) -> Result<Vec<PathBuf>> {
-    let folder = results.charts_path();
-    Disk.create_folder(&folder).map_err(|error| disk_error(&folder, &error))?;
+fn write(folder: &Path, name: &str, svg: &str) -> Result<Vec<PathBuf>> {
+    Disk.create_folder(folder).map_err(|error| disk_error(folder, &error))?;
     let paths = Picture::ALL.map(|format| folder.join(format!("{name}.{}", format.extension())));
     for path in &paths {
         picture::write(path, svg)?;

@@ -85,7 +85,7 @@ pub fn run(opened: &Opened, cost: CostName, format: Format, out: &mut dyn Write)
     print_front(&diagrams, cost, format, out)?;
     let mut write = |name: &str, svg: &str| -> Result<()> {
         let name = file_name(&format!("work-precision{name}{ending}"));
-        for path in super::write(results, &name, svg)? {
+        for path in super::write(&results.charts_path(), &name, svg)? {
             if format == Format::Table {
                 writeln!(out, "{}", path.display()).map_err(output_error)?;
             }

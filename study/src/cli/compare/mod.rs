@@ -10,6 +10,7 @@ use crate::analysis::replicates::Condensed;
 use crate::input::fraction::fraction;
 use crate::input::value::Value;
 use crate::job::Status;
+use crate::job::result_limit::ResultLimit;
 use crate::job::row::{BetterSide, DerivedColumn};
 use crate::platform::error::{Error, Result};
 use crate::platform::nearest::did_you_mean;
@@ -53,8 +54,8 @@ pub struct Args {
     /// the medians of the measures. Margins order where --measures names `smallest_margin`.
     #[arg(long, conflicts_with_all = ["tie", "runs", "summary"])]
     rank: bool,
-    /// Measures, comma-separated [default: `t_90_z_rim_since_release,peak_kinetic_energy` and, in a study
-    /// with limits, `smallest_margin`; for csv and json all measures for which smaller or larger is better; with --rank
+    /// Measures, comma-separated [default: `t_90_z_rim_since_release,peak_kinetic_energy`, in a study with limits
+    /// those that it limits and `smallest_margin`; for csv and json all measures for which smaller or larger is better; with --rank
     /// those that the study limits, then `peak_vz,peak_kinetic_energy,t_90_z_rim_since_release`].
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     measures: Vec<String>,
@@ -121,7 +122,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             Measure::of_runs(column, over).with_errors(&table)
         }
     };
-    let columns = measures(paired, &args.measures, format)?;
+    let columns = measures(paired, &args.measures, stored.study.result_limits(), format)?;
     let measures = columns.into_iter().map(measure).collect();
     let comparison =
         Comparison { table: paired, points: points.as_ref(), by, sets, pairs, measures };
@@ -216,13 +217,27 @@ fn base(stored: &Stored<'_>, by: &Column, text: &str) -> Result<Value> {
     })
 }
 
-fn measures<'a>(table: &'a Table, names: &[String], format: Format) -> Result<Vec<&'a Column>> {
+/// The measures to compare. A reader sees what is limited before the smallest margin, else the times and loads.
+fn measures<'a>(
+    table: &'a Table,
+    names: &[String],
+    limits: &[ResultLimit],
+    format: Format,
+) -> Result<Vec<&'a Column>> {
     let existing = |names: &[&str]| -> Vec<&'a Column> {
         names.iter().filter_map(|name| table.column(name)).collect()
     };
     match names {
         [] if format == Format::Table => {
-            Ok(existing(&[&DEFAULT_MEASURES[..], &[DerivedColumn::SmallestMargin.name()]].concat()))
+            let mut limited: Vec<&str> = limits.iter().map(|limit| limit.measure.name()).collect();
+            limited.dedup();
+            let mut shown: Vec<&'a Column> = existing(&limited);
+            shown.retain(|column| compare::is_measure(column));
+            if shown.is_empty() {
+                shown = existing(&DEFAULT_MEASURES);
+            }
+            shown.extend(table.column(DerivedColumn::SmallestMargin.name()));
+            Ok(shown)
         }
         [] => {
             let judged = [measures_with(BetterSide::Smaller), measures_with(BetterSide::Larger)];

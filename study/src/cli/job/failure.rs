@@ -42,7 +42,7 @@ pub(super) fn explanation(job: &Inspected) -> (Vec<TopicLine>, String) {
 
 /// What a status means, and what to do about it.
 fn meaning_and_next(job: &Inspected) -> (&'static str, String) {
-    let (id, root) = (job.id.short(), job.stored.results.root().display());
+    let (id, root) = (job.id.short(), crate::platform::quote::path(job.stored.results.root()));
     let history = format!("billow job {id} {root} --history");
     let again = format!("billow run {root} --again {id}");
     let has_history = !job.cells.text(ColumnId::ContentHash).is_empty();

@@ -129,7 +129,7 @@ impl Inspected {
     /// Every line of the explanation; the last one is the next step.
     fn explanation(&self) -> Result<Vec<TopicLine>> {
         let Self { stored, id, cells } = self;
-        let root = stored.results.root().display();
+        let root = crate::platform::quote::path(stored.results.root());
         let (mut lines, next) = match cells.status() {
             Status::Done => verdict::explanation(self),
             Status::Pending => {

@@ -62,7 +62,7 @@ pub(super) fn explanation(job: &Inspected) -> (Vec<TopicLine>, String) {
         let next = "a longer solver.end_time: the film was still moving at the end of the run";
         return (lines, next.to_owned());
     }
-    let root = job.stored.results.root().display();
+    let root = crate::platform::quote::path(job.stored.results.root());
     (lines, format!("billow job {} {root} --history", job.id.short()))
 }
 

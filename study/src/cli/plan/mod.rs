@@ -17,6 +17,7 @@ use super::options::{
     OutputOptions, QuietOption, ResultsOption, SetOption, ThreadsOption, UnitsOption,
 };
 use super::results::results_folder;
+use crate::analysis::replicates::{fixed, point_key};
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Parameters;
@@ -24,7 +25,7 @@ use crate::job::point::Point;
 use crate::job::row::CellType;
 use crate::platform::error::Result;
 use crate::platform::files::Disk;
-use crate::print::{self, notes, output_error, print_table, wrapped};
+use crate::print::{self, Format, notes, output_error, print_table, wrapped};
 use crate::store::results::Results;
 use crate::store::stored::other_physics;
 use crate::store::table::{Column, Table};
@@ -128,7 +129,36 @@ fn print_points(
     columns.push(text("note", &|point| (!point.merged.is_empty()).then(|| note(point, &unit))));
     let table = Table { columns };
     let rows: Vec<usize> = (0..table.rows()).collect();
-    print_table(&table, &table.columns.iter().collect::<Vec<_>>(), &rows, format, out)
+    if format != Format::Table {
+        return print_table(&table, &table.columns.iter().collect::<Vec<_>>(), &rows, format, out);
+    }
+    print_for_reader(table, &rows, &study.replicates(), out)
+}
+
+/// Prints the points to a reader: each once with the number of its runs, without columns that hold nothing.
+fn print_for_reader(
+    mut table: Table,
+    rows: &[usize],
+    replicates: &[String],
+    out: &mut dyn Write,
+) -> Result<()> {
+    let mut firsts = rows.to_vec();
+    if !replicates.is_empty() {
+        let fixed = fixed(&table, replicates);
+        let mut runs: BTreeMap<Vec<String>, i64> = BTreeMap::new();
+        firsts.retain(|row| {
+            let runs = runs.entry(point_key(&fixed, *row)).or_default();
+            *runs += 1;
+            *runs == 1
+        });
+        let of_row = |row: usize| Value::Integer(runs[&point_key(&fixed, row)]);
+        let cells = rows.iter().map(|row| of_row(*row)).collect();
+        let runs = Column::plain("runs", CellType::Integer, cells);
+        table.columns.retain(|column| !replicates.contains(&column.name) && column.name != "job");
+        table.columns.insert(0, runs);
+    }
+    table.columns.retain(|column| !column.is_empty());
+    print_table(&table, &table.columns.iter().collect::<Vec<_>>(), &firsts, Format::Table, out)
 }
 
 /// Prints how many jobs are finished, if the results folder belongs to this study, the lengths in use,

@@ -19,7 +19,7 @@ use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::study::{JOB_LIMITS, Study, plan};
 
-/// What is shown of a job and of its run with other settings.
+/// What is shown of a job and of its run with other settings, before the measures of the limits.
 const COMPARED: [ColumnId; 8] = [
     ColumnId::Status,
     ColumnId::Verdict,
@@ -173,11 +173,17 @@ fn print(
     args: &Args,
     out: &mut dyn Write,
 ) -> Result<()> {
+    let mut compared = COMPARED.to_vec();
+    for limit in stored.study.result_limits() {
+        if !compared.contains(&limit.measure) {
+            compared.push(limit.measure);
+        }
+    }
     let mut columns = vec!["job".to_owned(), "set".to_owned()];
-    columns.extend(COMPARED.map(|column| column.name().to_owned()));
+    columns.extend(compared.iter().map(|column| column.name().to_owned()));
     let row = |id: &JobId, set: Value, cells: &Cells| {
         let mut row = vec![Value::Text(id.short().to_owned()), set];
-        row.extend(COMPARED.iter().map(|column| match column {
+        row.extend(compared.iter().map(|column| match column {
             ColumnId::Status => Value::Text(cells.status().name().to_owned()),
             column => cells.get(*column).clone(),
         }));

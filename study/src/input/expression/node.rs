@@ -118,6 +118,8 @@ fn combined<'a>(
             Operator::Add => return Known::number(a + b),
             Operator::Subtract => return Known::number(a - b),
             Operator::Multiply => return Known::number(a * b),
+            // A ratio to nothing is no value, as an empty cell is.
+            Operator::Divide if b == 0.0 => return None,
             Operator::Divide => return Known::number(a / b),
             _ => {}
         }

@@ -149,6 +149,13 @@ impl Key {
         Ok(value)
     }
 
+    /// The keys of its object, where it has one beside its words.
+    fn parts(&self) -> Vec<&'static str> {
+        let is_part =
+            |key: &&Key| key.path.strip_prefix(self.path).is_some_and(|rest| rest.starts_with('.'));
+        super::KEYS.iter().filter(is_part).map(|key| key.path).collect()
+    }
+
     /// Reads a value that no user wrote, as one between the ends of a range.
     pub(crate) fn value_silently(
         &self,
@@ -159,6 +166,10 @@ impl Key {
         self.read(json).map_err(|Refusal { problem, allowed }| {
             source.error(path, json, problem, allowed).with_hint(
                 match plausible::meant(self, json) {
+                    None if matches!(json, Json::Object(_)) && !self.parts().is_empty() => format!(
+                        "an axis takes its words; {} vary together under grid.zip",
+                        self.parts().join(" and ")
+                    ),
                     Some(text) => format!("if {text} is meant, write {text:?}"),
                     None => format!("write it as in {}", self.sample()),
                 },

@@ -56,6 +56,11 @@ impl Counts {
         self.rows() - self.of(Status::Infeasible)
     }
 
+    /// Number of jobs that have run.
+    pub fn ended(&self) -> usize {
+        self.jobs() - self.of(Status::Pending)
+    }
+
     /// Failed jobs by name of their status.
     pub fn failures(&self) -> BTreeMap<String, usize> {
         let failed = |name: &str| Status::from_name(name).is_some_and(Status::is_failure);

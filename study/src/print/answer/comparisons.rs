@@ -12,9 +12,11 @@ use crate::print::{MAX_VALUES, count};
 /// Why a parameter has no effect on a measure.
 pub(super) const BEFORE_INFLOW: &str = "its peak comes before the inflow that this changes";
 
-/// One line per parameter.
+/// One line per parameter. The border of a search says what its parameter does.
 pub(super) fn lines(answer: &Answer) -> Vec<String> {
-    let ranked = answer.comparisons.iter().filter_map(|(_, ranking)| ranking.as_ref().ok());
+    let searched = answer.searches.as_ref().map(|searches| &searches.parameter);
+    let compared = answer.comparisons.iter().filter(|(name, _)| Some(name) != searched);
+    let ranked = compared.filter_map(|(_, ranking)| ranking.as_ref().ok());
     ranked.map(|ranking| line(answer, ranking)).collect()
 }
 
@@ -42,16 +44,19 @@ fn line(answer: &Answer, ranking: &Ranking) -> String {
     if !ranking.carried.is_empty() {
         let _ = write!(text, ", {} with it", ranking.carried.join(", "));
     }
+    if ranking.outside > 0 {
+        let _ = write!(text, "; {} in no set", count(ranking.outside, "point"));
+    }
     text
 }
 
-fn value(ranking: &Ranking, candidate: &Candidate) -> String {
+pub(super) fn value(ranking: &Ranking, candidate: &Candidate) -> String {
     let value = candidate.values.first().unwrap_or(&Value::Null);
     ranking.by.first().map_or_else(String::new, |by| by.shown.quantity(value))
 }
 
 /// Some texts as a list, and the number of the others.
-fn listed(texts: impl Iterator<Item = String>) -> String {
+pub(super) fn listed(texts: impl Iterator<Item = String>) -> String {
     let mut texts: Vec<String> = texts.collect();
     let more = texts.len().saturating_sub(MAX_VALUES);
     if more > 0 {

@@ -8,6 +8,7 @@ use crate::input::value::json_value;
 use crate::print::json_objects;
 
 use super::comparisons::BEFORE_INFLOW;
+use super::headline::headline;
 
 /// The answer as JSON keys.
 pub fn json(answer: &Answer) -> Value {
@@ -23,6 +24,7 @@ pub fn json(answer: &Answer) -> Value {
     });
     json!({
         "question": answer.question,
+        "answer": headline(answer),
         "assumptions": answer.assumptions,
         "jobs": answer.counts.jobs(),
         "near_threshold": answer.counts.near_threshold,

@@ -13,11 +13,13 @@ use crate::input::units::{self, Dimension, DisplayUnit};
 use crate::input::value::{Value, brief_number};
 use crate::job::Status;
 use crate::job::row::ColumnId;
+use crate::platform::quote;
 use crate::print::{count, wrapped};
 use crate::store::table::Column;
 
 mod border;
 mod comparisons;
+mod headline;
 mod json;
 mod safe;
 
@@ -35,8 +37,9 @@ const MAX_PLAUSIBLE_STRAIN: f64 = 0.1;
 pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out)?;
     if !answer.question.is_empty() {
-        writeln!(out, "{}", crate::platform::quote::printable(&answer.question))?;
+        writeln!(out, "{}", quote::printable(&answer.question))?;
     }
+    print_topic("answer", headline::headline(answer).as_slice(), out)?;
     print_topic("assumed", &[answer.assumptions.join("; ")], out)?;
     let deployed = match &answer.points {
         Some(points) => safe::deployed(points, &answer.counts),
@@ -98,7 +101,7 @@ fn print_extremes(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
 
 /// Prints the commands that show more.
 pub fn print_next(answer: &Answer, root: &Path, out: &mut dyn Write) -> io::Result<()> {
-    let root = root.display();
+    let root = quote::path(root);
     writeln!(out, "  next     billow table {root}")?;
     writeln!(out, "           billow chart {root}")?;
     if answer.safety.is_some() {
@@ -127,10 +130,15 @@ pub fn print_next(answer: &Answer, root: &Path, out: &mut dyn Write) -> io::Resu
         && let (Some(by), Some(best)) = (ranking.by.first(), ranking.candidates.first())
     {
         let base = match &best.values[0] {
-            Value::Number(number) => shell_word(&Value::Text(exact(by, *number))),
-            other => shell_word(other),
+            Value::Number(number) => exact(by, *number),
+            other => other.to_string(),
         };
-        writeln!(out, "           billow compare {root} --by {} --base {base}", by.name)?;
+        writeln!(
+            out,
+            "           billow compare {root} --by {} --base {}",
+            by.name,
+            quote::word(&base)
+        )?;
     }
     Ok(())
 }
@@ -142,16 +150,6 @@ fn exact(by: &Column, si: f64) -> String {
     let dimension = Dimension::all().find(|known| known.si() == by.unit);
     let read = dimension.and_then(|dimension| units::parse(&text, dimension).ok());
     if read == Some(si) && unit.symbol() != by.unit { text } else { si.to_string() }
-}
-
-/// A value as one word of a shell command.
-pub fn shell_word(value: &Value) -> String {
-    let text = match value {
-        Value::Number(number) => number.to_string(),
-        other => other.to_string(),
-    };
-    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_' | '+');
-    if !text.is_empty() && text.chars().all(plain) { text } else { format!("{text:?}") }
 }
 
 /// What to do about runs that ended too early.

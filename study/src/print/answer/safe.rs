@@ -97,10 +97,10 @@ pub(super) fn safe(safety: &Safety) -> String {
         let _ = write!(all, "; most of the uncertainty is: {}", causes.join(", "));
     }
     if let Some(nearest) = &safety.nearest {
-        let what = if nearest.run.value < 0.0 {
-            "least beyond a limit"
-        } else {
-            "safe and nearest to a limit"
+        let what = match nearest.run.value {
+            margin if margin < 0.0 => "least beyond a limit",
+            _ if safety.counts.safe == 0 => "nearest to a limit",
+            _ => "safe and nearest to a limit",
         };
         let (limit, job) = (at_limit(&nearest.limit, nearest.seeds), job_text(&nearest.run));
         let _ = write!(all, "; {what}: {limit}, at {job}");

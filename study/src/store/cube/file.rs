@@ -197,7 +197,7 @@ impl CubeFile {
     }
 
     fn label(&self, dataset: &Dataset, unit: &str, meaning: &str) -> hdf5::Result<()> {
-        self.writer.text(dataset, "units", unit)?;
+        self.writer.text(dataset, "units", &with_powers(unit))?;
         self.writer.text(dataset, "long_name", meaning)
     }
 
@@ -234,4 +234,16 @@ fn locked<T>(path: &Path, call: impl FnOnce() -> hdf5::Result<T>) -> Result<T> {
             "HDF5 cannot write it: {error}\n  next: free some space, or choose another file"
         ),
     })
+}
+
+/// A unit with its powers written so that pint, udunits and the CF convention read them: `m^3` of `m3`.
+fn with_powers(unit: &str) -> String {
+    let mut text = String::new();
+    for c in unit.chars() {
+        if c.is_ascii_digit() && text.ends_with(|last: char| last.is_alphabetic()) {
+            text.push('^');
+        }
+        text.push(c);
+    }
+    text
 }

@@ -11,7 +11,7 @@
 //! /z_rim, …    columns of the histories: f64                            [point, time]
 //! ```
 //!
-//! - Every variable has `units` (SI; "1" for a pure number, empty for a text) and `long_name`; its attribute
+//! - Every variable has `units` (SI, powers as in "m^3"; "1" for a pure number, empty for a text) and `long_name`; its attribute
 //!   `coordinates` names the parameters. `set_index(point=["N", …]).unstack("point")` of xarray gives arrays over the
 //!   axes of a grid.
 //! - The time axis is the union of the sample times of all jobs. Only done jobs have values over time. Other points,

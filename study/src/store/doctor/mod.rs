@@ -11,7 +11,7 @@ use crate::job::JobId;
 use crate::job::point::Point;
 use crate::platform::error::Error;
 use crate::platform::files::disk_error;
-use crate::store::journal::Journal;
+use crate::store::journal::{Journal, Record};
 use crate::store::results::Results;
 use crate::store::stored::{self, Stored};
 use crate::study::Study;
@@ -56,6 +56,8 @@ pub struct Health {
     pub records: usize,
     /// Number of history files checked.
     pub histories: usize,
+    /// Number of checkpoints of jobs that have not ended.
+    pub checkpoints: usize,
     /// Whether another process is running the study.
     pub running: bool,
 }
@@ -109,7 +111,7 @@ pub fn examine(results: &Results<'_>) -> Health {
         }
         health.findings.sort_by_key(|finding| !finding.fault);
     }
-    let root = results.root().display();
+    let root = crate::platform::quote::path(results.root());
     for finding in &mut health.findings {
         let repair = format!("`billow doctor --repair {root}`");
         finding.next = finding.next.replace("`billow doctor --repair`", &repair);
@@ -170,6 +172,9 @@ fn check_files(results: &Results<'_>, journal: &Journal, paths: &[PathBuf], heal
     };
     unknown_files::check(results, &is_known, paths, health);
     check_checkpoints(results, health);
+    let is_open = |id: &JobId| journal.records.get(id).is_none_or(Record::reached_limit);
+    health.checkpoints =
+        results.checkpoints().unwrap_or_default().iter().filter(|id| is_open(id)).count();
     health.records = journal.records.len();
 }
 
@@ -186,7 +191,7 @@ fn check_checkpoints(results: &Results<'_>, health: &mut Health) {
 
 fn check_study(results: &Results<'_>, health: &mut Health) -> Option<Study> {
     let path = results.study_path();
-    let root = results.root().display();
+    let root = crate::platform::quote::path(results.root());
     let next = format!(
         "run `billow doctor --repair {root}`, or `billow run STUDY --results {root}` with the study file: it \
          writes the file again"

@@ -68,7 +68,7 @@ impl Results<'_> {
             State::Missing => Ok(None),
             State::Valid(owner) => Ok(Some(owner)),
             State::Damaged(problem) => {
-                let root = self.root().display();
+                let root = crate::platform::quote::path(self.root());
                 Err(Error::Disk {
                     path: self.study_path(),
                     problem: format!(

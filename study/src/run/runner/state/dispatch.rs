@@ -32,7 +32,7 @@ impl State<'_, '_> {
     ) -> Result<()> {
         let quarantined: Vec<Job> =
             missing.extract_if(.., |job| self.deaths.is_quarantined(&job.id)).collect();
-        let root = self.run.results.root().display().to_string();
+        let root = crate::platform::quote::path(self.run.results.root());
         let Some(note) = quarantine::quarantine_note(quarantined.iter(), self.run.label, &root)
         else {
             return Ok(());
