@@ -3,7 +3,7 @@
 //! A feature is an element, an edge or a node. Features have consecutive numbers: first the
 //! elements, then the edges, then the nodes.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Number of an element, edge or node among all features of a mesh.
 pub type Feature = u32;
@@ -21,6 +21,15 @@ pub struct Topology {
     elements_at_edge: Vec<u32>,
     /// Number of elements at each node.
     elements_at_node: Vec<u32>,
+    ignored: Ignored,
+}
+
+/// Pairs of film that nothing tests: those of elements that touch or cross at the start.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Ignored {
+    node_elements: BTreeSet<[u32; 2]>,
+    edge_elements: BTreeSet<[u32; 2]>,
+    edges: BTreeSet<[u32; 2]>,
 }
 
 /// An index in the 32 bits that elements use.
@@ -63,7 +72,43 @@ impl Topology {
             element_edges,
             elements_at_edge,
             elements_at_node,
+            ignored: Ignored::default(),
         }
+    }
+
+    /// Has every pair of a node, an edge or an element of one element with one of another ignored, for these pairs of
+    /// elements.
+    pub fn ignore(&mut self, pairs: &[[u32; 2]]) {
+        for [a, b] in pairs {
+            for [a, b] in [[*a, *b], [*b, *a]] {
+                let (edges, other) =
+                    (self.element_edges[a as usize], self.element_edges[b as usize]);
+                self.ignored.node_elements.extend(self.triangles[a as usize].map(|node| [node, b]));
+                self.ignored.edge_elements.extend(edges.map(|edge| [edge, b]));
+                let of_edge = |edge: u32| other.map(|other| [edge, other]);
+                self.ignored.edges.extend(edges.iter().flat_map(|edge| of_edge(*edge)));
+            }
+        }
+    }
+
+    /// Whether any pair is ignored.
+    pub fn has_ignored(&self) -> bool {
+        !self.ignored.edges.is_empty()
+    }
+
+    /// Whether a node and an element are ignored.
+    pub fn ignores_node(&self, node: u32, element: u32) -> bool {
+        self.has_ignored() && self.ignored.node_elements.contains(&[node, element])
+    }
+
+    /// Whether two edges are ignored.
+    pub fn ignores_edges(&self, a: u32, b: u32) -> bool {
+        self.has_ignored() && self.ignored.edges.contains(&[a, b])
+    }
+
+    /// Whether an edge and an element are ignored.
+    pub fn ignores_edge(&self, edge: u32, element: u32) -> bool {
+        self.has_ignored() && self.ignored.edge_elements.contains(&[edge, element])
     }
 
     /// Number of nodes.

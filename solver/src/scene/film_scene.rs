@@ -54,8 +54,7 @@ pub enum Filling {
 /// Contact of film with film and with plates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmContact {
-    /// Contact distance, m; `None` for 0.4 times the smallest initial gap
-    /// ([`crate::collision::contact::default_distance`]). A capsule has a default of its design
+    /// Contact distance, m; `None` for 0.4 times the smallest initial gap that is not that of a single spot. A capsule has a default of its design
     /// ([`crate::models::film::capsule::resolved_contact`]).
     pub distance: Option<f64>,
     /// Coulomb friction coefficient.
@@ -66,6 +65,8 @@ pub struct FilmContact {
     pub adhesion_range: Option<f64>,
     /// Rigid plates that touch the film.
     pub plates: Vec<Plate>,
+    /// Pairs of elements without contact: they touch or cross at the start.
+    pub ignored: Vec<[u32; 2]>,
     /// Settings of the tunnelling monitor.
     pub monitor: MonitorSettings,
 }
@@ -86,6 +87,7 @@ impl Default for FilmContact {
             adhesion: 0.0,
             adhesion_range: None,
             plates: Vec::new(),
+            ignored: Vec::new(),
             monitor: MonitorSettings::FRAMES,
         }
     }

@@ -6,6 +6,7 @@ use super::pair::{Pair, PairKind, vectors_of};
 use crate::collision::broad_phase::collision_mesh::{CollisionMesh, pairs_within_bounds};
 use crate::collision::broad_phase::kdop::KDops;
 use crate::geometry::field::Field;
+use crate::geometry::topology::Topology;
 use crate::mechanics::film_model::FilmModel;
 use crate::platform::simd::InstructionSet;
 use crate::scene::plate::Plate;
@@ -68,16 +69,19 @@ const MAX_DISTANCE_PER_EDGE: f64 = 0.02;
 impl ContactModel {
     /// Contact of a film at `positions` (m), without plates, friction and adhesion.
     ///
-    /// `distance` (m) is the contact distance; `None` for the [`default_distance`] of these positions.
+    /// `distance` (m) is the contact distance; `None` for the [`common_distance`] of these positions. `ignored`: pairs of
+    /// elements without contact.
     pub fn of_film(
         film: &FilmModel,
         positions: &Field,
         distance: Option<f64>,
+        ignored: &[[u32; 2]],
         instruction_set: InstructionSet,
     ) -> Self {
-        let mesh = CollisionMesh::new(film.nodes(), &film.triangles);
+        let mut mesh = CollisionMesh::new(film.nodes(), &film.triangles);
+        mesh.topology.ignore(ignored);
         let edge_length = mean_edge_length(&mesh, positions);
-        let distance = distance.unwrap_or_else(|| default_distance(&mesh, positions));
+        let distance = distance.unwrap_or_else(|| common_distance(&mesh, positions));
         let frequency = film.largest_frequency();
         let mut model = Self::new(mesh, distance, frequency, edge_length, instruction_set);
         let area: f64 = film.volume.iter().sum::<f64>() / film.thickness;
@@ -171,9 +175,50 @@ impl ContactModel {
         if kind == PairKind::EdgeEdge && !self.has_edge_contacts() {
             gaps.resize(gaps.len() + pairs.len(), f64::INFINITY);
         } else {
-            distances(self.instruction_set, kind, &self.mesh.topology, positions, pairs, gaps);
+            let (topology, before) = (&self.mesh.topology, gaps.len());
+            distances(self.instruction_set, kind, topology, positions, pairs, gaps);
+            if topology.has_ignored() {
+                for (pair, gap) in pairs.iter().zip(&mut gaps[before..]) {
+                    // They never come due.
+                    if is_ignored(topology, kind, *pair) {
+                        *gap = f64::INFINITY;
+                    }
+                }
+            }
         }
     }
+}
+
+/// Whether a pair has no contact.
+fn is_ignored(topology: &Topology, kind: PairKind, [first, second]: [u32; 2]) -> bool {
+    match kind {
+        PairKind::NodeElement => topology.ignores_node(first, second),
+        PairKind::EdgeEdge => topology.ignores_edges(first, second),
+    }
+}
+
+/// Proportion of the nodes whose gaps are as small as the smallest that counts. Chosen: one bad spot of a mesh is far
+/// fewer, a layer far more.
+const COMMON: f64 = 0.01;
+
+/// The contact distance of film at these positions (m) where none is given, m: as [`default_distance`], but the smallest
+/// gap is one up to twice of which a hundredth of the nodes have theirs. Pairs that start closer keep their gap as offset.
+fn common_distance(mesh: &CollisionMesh, positions: &Field) -> f64 {
+    let max_distance = MAX_DISTANCE_PER_EDGE * mean_edge_length(mesh, positions);
+    let mut gap_of = vec![f64::INFINITY; mesh.topology.nodes()];
+    pairs_within(mesh, positions, max_distance / DISTANCE_PER_GAP, |pair, gap| {
+        if pair.kind == PairKind::NodeElement {
+            let of_node = &mut gap_of[pair.first as usize];
+            *of_node = of_node.min(gap);
+        }
+    });
+    let mut gaps: Vec<f64> = gap_of.iter().copied().filter(|gap| gap.is_finite()).collect();
+    gaps.sort_by(f64::total_cmp);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small number")]
+    let needed = libm::ceil(COMMON * gap_of.len() as f64) as usize;
+    let is_common = |gap: &f64| gaps.partition_point(|other| *other <= 2.0 * gap) >= needed;
+    let gap = gaps.iter().copied().find(is_common).unwrap_or(f64::INFINITY);
+    (DISTANCE_PER_GAP * gap).min(max_distance)
 }
 
 /// The default contact distance of film at these positions (m), m: 0.4 of the smallest gap of a node
@@ -208,7 +253,7 @@ fn pairs_within(
     pairs_within_bounds(mesh, &kdops, radius, |kind, [first, second]| {
         let pair = Pair { kind, first, second };
         let gap = pair.closest(&vectors_of(positions, pair.nodes(&mesh.topology))).squared.sqrt();
-        if gap < radius {
+        if gap < radius && !is_ignored(&mesh.topology, kind, [first, second]) {
             visit(pair, gap);
         }
     });

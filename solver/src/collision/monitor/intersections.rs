@@ -67,6 +67,9 @@ impl IntersectionCounter {
 
 /// Whether an edge passes through an element.
 fn intersects(topology: &Topology, positions: &Field, [edge, element]: [u32; 2]) -> bool {
+    if topology.ignores_edge(edge, element) {
+        return false;
+    }
     let position = |node: u32| positions.get(node as usize);
     segment_intersects_triangle(
         topology.edges[edge as usize].map(position),

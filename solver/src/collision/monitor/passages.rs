@@ -75,6 +75,13 @@ impl Passage {
 
     /// Whether this passage occurs on the straight motion between two positions of all nodes.
     pub fn occurs(self, topology: &Topology, from: &Field, to: &Field) -> bool {
+        let is_ignored = match self {
+            Self::Node { node, element } => topology.ignores_node(node, element),
+            Self::Edge { edge, other } => topology.ignores_edges(edge, other),
+        };
+        if is_ignored {
+            return false;
+        }
         let (x, y) = (self.positions(topology, from), self.positions(topology, to));
         match self {
             Self::Node { .. } => {

@@ -181,8 +181,9 @@ pub fn constants(
 /// The contact model of a scene. Until its release the film lies packed between base and lid.
 fn contact_model(scene: &FilmScene, model: &FilmModel, positions: &Field) -> ContactModel {
     let contact = scene.contact.clone().unwrap_or_default();
+    let (distance, set) = (contact.distance, scene.solver.instruction_set);
     let mut contact_model =
-        ContactModel::of_film(model, positions, contact.distance, scene.solver.instruction_set);
+        ContactModel::of_film(model, positions, distance, &contact.ignored, set);
     contact_model.soften(scene.solver.cfl);
     contact_model.friction = contact.friction;
     if contact.adhesion > 0.0 {
