@@ -13,7 +13,7 @@ use crate::prelude::*;
 /// The paper's inflow, 5 g/s at 293 K, into a released capsule.
 pub const INFLOW: Phase = Phase {
     packed: false,
-    inflow: Inflow { mass_flow_rate: 5e-3, temperature_flow: 5e-3 * 293.0 },
+    inflow: Inflow { mass_flow_rate: 5e-3, temperature_flow: 5e-3 * 293.0, vent_open: false },
     end: 0.0,
 };
 

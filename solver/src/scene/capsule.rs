@@ -118,8 +118,38 @@ pub struct GasSupply {
     pub heat_transfer: HeatTransfer,
     /// Area of the leak orifice, m².
     pub leak_area: f64,
-    /// Discharge coefficient of the leak orifice.
+    /// Discharge coefficient of the leak orifice and of the vent.
     pub discharge_coefficient: f64,
+    /// A vent beside the leak.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vent: Option<Vent>,
+}
+
+/// An orifice that opens at a time, or with the overpressure, and closes again.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Vent {
+    /// Area when it is fully open, m².
+    pub area: f64,
+    /// Times between which it can be open, s.
+    pub from: f64,
+    /// End of these times, s.
+    pub to: f64,
+    /// Overpressure at which it begins to open, Pa.
+    pub opens_at: f64,
+    /// Overpressure at which it is fully open, Pa; 0 for a vent that does not depend on it.
+    pub full_at: f64,
+}
+
+impl Vent {
+    /// Open area at this overpressure (Pa), m²: proportional between both pressures, as of a relief valve.
+    pub fn open_area(&self, overpressure: f64) -> f64 {
+        if self.full_at <= 0.0 {
+            return self.area;
+        }
+        let range = self.full_at - self.opens_at;
+        self.area * ((overpressure - self.opens_at) / range).clamp(0.0, 1.0)
+    }
 }
 
 /// An ideal gas.

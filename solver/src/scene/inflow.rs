@@ -1,6 +1,6 @@
 //! The inflow schedule: windows of constant mass flow rate and temperature; overlapping windows add up.
 
-use super::InflowWindow;
+use super::{GasSupply, InflowWindow, Vent};
 
 /// Total inflow of all open windows.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -9,12 +9,15 @@ pub struct Inflow {
     pub mass_flow_rate: f64,
     /// Σ ṁ `T_in`, kg K/s; times cp, the enthalpy flow in W.
     pub temperature_flow: f64,
+    /// Whether the vent can be open.
+    pub vent_open: bool,
 }
 
 /// The inflow windows of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Schedule {
     windows: Vec<InflowWindow>,
+    vent: Option<Vent>,
     change_times: Vec<f64>,
 }
 
@@ -24,10 +27,19 @@ impl Schedule {
         let mut change_times: Vec<f64> = windows.iter().flat_map(|w| [w.from, w.to]).collect();
         change_times.sort_by(f64::total_cmp);
         change_times.dedup();
-        Self { windows: windows.to_vec(), change_times }
+        Self { windows: windows.to_vec(), vent: None, change_times }
     }
 
-    /// Times at which a window opens or closes, in ascending order, s.
+    /// The schedule of a supply: its windows, and the times of its vent.
+    pub fn of(supply: &GasSupply) -> Self {
+        let mut schedule = Self { vent: supply.vent, ..Self::new(&supply.windows) };
+        schedule.change_times.extend(supply.vent.iter().flat_map(|vent| [vent.from, vent.to]));
+        schedule.change_times.sort_by(f64::total_cmp);
+        schedule.change_times.dedup();
+        schedule
+    }
+
+    /// Times at which a window or the vent opens or closes, in ascending order, s.
     pub fn change_times(&self) -> &[f64] {
         &self.change_times
     }
@@ -36,9 +48,11 @@ impl Schedule {
     pub fn between(&self, from: f64, to: f64) -> Inflow {
         let middle = 0.5 * (from + to);
         let open = self.windows.iter().filter(|w| w.from <= middle && middle < w.to);
-        open.fold(Inflow::default(), |sum, window| Inflow {
+        let vent_open = self.vent.is_some_and(|vent| vent.from <= middle && middle < vent.to);
+        open.fold(Inflow { vent_open, ..Inflow::default() }, |sum, window| Inflow {
             mass_flow_rate: sum.mass_flow_rate + window.mass_flow_rate,
             temperature_flow: sum.temperature_flow + window.mass_flow_rate * window.temperature,
+            vent_open,
         })
     }
 

@@ -18,5 +18,5 @@ mod validate;
 pub use capsule::{
     Contact, Creases, DEFAULT_CFL, Film, GasSupply, HeatTransfer, InflowWindow, IntegratorKind,
     MAX_SAMPLES, ModelKind, Outputs, Scene, Solver, Species, Stepping, Support, SupportLocation,
-    Thresholds,
+    Thresholds, Vent,
 };

@@ -79,6 +79,7 @@ pub fn nitrogen_supply() -> GasSupply {
         ambient_pressure: 0.0,
         heat_transfer: HeatTransfer::Coefficient(0.0),
         leak_area: 0.0,
+        vent: None,
         discharge_coefficient: 0.6,
     }
 }

@@ -45,7 +45,7 @@ impl Timeline {
             end_time: scene.solver.end_time,
             sample_interval: scene.outputs.sample_interval,
             release_time: scene.release_time,
-            schedule: Schedule::new(&scene.gas.windows),
+            schedule: Schedule::of(&scene.gas),
             ambient_pressure: scene.gas.ambient_pressure,
             frames: scene.outputs.frames,
             thresholds: scene.outputs.thresholds,
@@ -56,9 +56,7 @@ impl Timeline {
     pub fn of_film(scene: &FilmScene) -> Self {
         let (schedule, ambient_pressure) = match &scene.filling {
             Filling::Pressure(_) => (Schedule::new(&[]), 0.0),
-            Filling::Gas { supply, .. } => {
-                (Schedule::new(&supply.windows), supply.ambient_pressure)
-            }
+            Filling::Gas { supply, .. } => (Schedule::of(supply), supply.ambient_pressure),
         };
         Self {
             end_time: scene.solver.end_time,

@@ -72,6 +72,14 @@ impl Scene {
             not_negative("gas.heat_transfer.coefficient", coefficient, "W/(m² K)")?;
         }
         not_negative("gas.leak_area", gas.leak_area, "m²")?;
+        if let Some(vent) = gas.vent {
+            not_negative("gas.vent_area", vent.area, "m²")?;
+            not_negative("gas.vent_opens_at", vent.opens_at, "Pa")?;
+            let later = |to: f64| to > vent.from;
+            number("gas.vent_to", vent.to, later, "later than gas.vent_from")?;
+            let above = |full: f64| full == 0.0 && vent.opens_at == 0.0 || full > vent.opens_at;
+            number("gas.vent_full_at", vent.full_at, above, "above gas.vent_opens_at")?;
+        }
         let coefficient = |value: f64| value > 0.0 && value <= 1.0;
         let key = "gas.discharge_coefficient";
         number(key, gas.discharge_coefficient, coefficient, "above 0, at most 1")

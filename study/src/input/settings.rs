@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 
 use billow_solver::geometry::fold::{Caps, FoldDesign};
 use billow_solver::scene::{
-    Contact, Creases, Film, GasSupply, HeatTransfer, InflowWindow, IntegratorKind, Species, Support,
+    Contact, Creases, Film, GasSupply, HeatTransfer, InflowWindow, IntegratorKind, Species,
+    Support, Vent,
 };
 
 use crate::input::json::Json;
@@ -13,6 +14,7 @@ use crate::input::keys::{
     CAPS, CHIRALITIES, FITS, INTEGRATORS, ISOTHERMAL, Key, Named, SPECIES, STRATEGY_KEYS, Table,
     WINDOW_KEYS, pick, position,
 };
+use crate::input::plausible::Implausible;
 use crate::input::source::{Source, shown};
 use crate::input::value::Value;
 use crate::platform::error::InputError;
@@ -40,6 +42,10 @@ pub(crate) struct Settings {
     /// What holds the capsule of a study.
     pub supports: Vec<Support>,
 }
+
+/// Overpressure at which a vent is fully open over that at which it begins to open, by default. Chosen: that of common
+/// relief valves (10 % accumulation).
+const FULL_OVER_OPENING: f64 = 1.1;
 
 impl Settings {
     /// Every key at its default.
@@ -279,7 +285,43 @@ impl Settings {
             },
             leak_area: self.needed("gas.leak_area", source)?,
             discharge_coefficient: self.needed("gas.discharge_coefficient", source)?,
+            vent: self.vent(end_time, source)?,
         })
+    }
+
+    /// The vent, where it has an area: cut at the end of the run, so that equal physics gives an equal job.
+    fn vent(&self, end_time: f64, source: &Source) -> Result<Option<Vent>, InputError> {
+        let Some(area) = self.number("gas.vent_area").filter(|area| *area > 0.0) else {
+            let others = ["gas.vent_from", "gas.vent_to", "gas.vent_opens_at", "gas.vent_full_at"];
+            let given = others.into_iter().find(|key| self.number(key).is_some_and(|x| x > 0.0));
+            if let Some(key) = given {
+                let problem = "has no effect: the vent has no area".to_owned();
+                let next = "give gas.vent_area".to_owned();
+                let value = shown(self.number(key).unwrap_or_default());
+                source.warn_point(key, &value, Implausible { problem, next });
+            }
+            return Ok(None);
+        };
+        let opens_at = self.number("gas.vent_opens_at").unwrap_or(0.0);
+        let (from, to) = (self.number("gas.vent_from").unwrap_or(0.0), self.number("gas.vent_to"));
+        let full_at = self.number("gas.vent_full_at");
+        if let Some(to) = to.filter(|to| *to <= from) {
+            let allowed = "a time after gas.vent_from";
+            return Err(source.error("gas.vent_to", shown(to), "closes before it opens", allowed));
+        }
+        if let Some(full_at) = full_at.filter(|full_at| *full_at <= opens_at) {
+            let problem = "is not above gas.vent_opens_at";
+            let allowed = "an overpressure above it";
+            return Err(source.error("gas.vent_full_at", shown(full_at), problem, allowed));
+        }
+        // A vent that never opens within the run is none.
+        Ok((from < end_time).then(|| Vent {
+            area,
+            from,
+            to: to.unwrap_or(end_time).min(end_time),
+            opens_at,
+            full_at: full_at.unwrap_or(FULL_OVER_OPENING * opens_at),
+        }))
     }
 
     /// The species of the gas: a named one, or one by its constants. A constant given in addition to a

@@ -178,6 +178,10 @@ mod tests {
                 let length = KEYS.iter().position(|key| key.path == "creases.length_scale");
                 before.set(length.unwrap(), Value::Number(0.02));
             }
+            if key.path.starts_with("gas.vent_") && key.path != "gas.vent_area" {
+                let area = KEYS.iter().position(|key| key.path == "gas.vent_area");
+                before.set(area.unwrap(), Value::Number(1e-4));
+            }
             let mut after = before.clone();
             let other = match (key.kind, before.at(index)) {
                 (_, Value::Integer(number)) => Value::Integer(number + 1),

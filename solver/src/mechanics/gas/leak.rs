@@ -1,4 +1,4 @@
-//! Mass flow through the leak orifice: isentropic, choked or subsonic, towards the lower pressure.
+//! Mass flow through the leak orifice and the vent: isentropic, choked or subsonic, towards the lower pressure.
 //!
 //! ```text
 //! ṁ = C_d A √(p ρ) √γ (2/(γ+1))^((γ+1)/(2(γ−1)))          choked,   r ≤ (2/(γ+1))^(γ/(γ−1))
@@ -32,6 +32,11 @@ impl Orifice {
             critical_ratio: libm::pow(base, gamma / excess),
             choked_factor: gamma.sqrt() * libm::pow(base, (gamma + 1.0) / (2.0 * excess)),
         }
+    }
+
+    /// The orifice with this `C_d` A (m²) more.
+    pub(super) fn wider(self, effective_area: f64) -> Self {
+        Self { effective_area: self.effective_area + effective_area, ..self }
     }
 
     /// Outflow, kg/s, of gas at pressure p (Pa) and density ρ (kg/m³) to the pressure `ambient` (Pa);

@@ -10,6 +10,7 @@
 //! h heat transfer coefficient, W/(m² K); A film area, m².
 //!
 //! - Without gas p = 0, and the temperature is reported as that of the film.
+//! - A vent is a wider leak while it is open ([`Vent`]).
 //! - The leak flows both ways. Where p < `p_ambient`, `ṁ_out` is negative: the same equations with inside and
 //!   outside exchanged, for gas of the same species at film temperature outside.
 //! - [`HeatTransfer::Isothermal`] is exact: T = `T_film`, and the heat follows from the balance.
@@ -21,7 +22,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::scene::inflow::Inflow;
-use crate::scene::{GasSupply, HeatTransfer};
+use crate::scene::{GasSupply, HeatTransfer, Vent};
 
 mod expansion;
 mod leak;
@@ -80,6 +81,8 @@ pub struct Gas {
     /// Film area of the heat exchange, m².
     pub film_area: f64,
     orifice: Orifice,
+    vent: Option<Vent>,
+    discharge_coefficient: f64,
 }
 
 impl Gas {
@@ -95,6 +98,8 @@ impl Gas {
             heat_transfer: supply.heat_transfer,
             film_area,
             orifice: Orifice::new(cp / cv, supply.discharge_coefficient * supply.leak_area),
+            vent: supply.vent,
+            discharge_coefficient: supply.discharge_coefficient,
         }
     }
 
@@ -152,11 +157,18 @@ impl Gas {
         let temperature =
             if state.mass > 0.0 { self.temperature(state) } else { self.first_temperature(inflow) };
         let pressure = self.pressure(state, volume);
-        let outflow = self.orifice.mass_flow(pressure, state.mass / volume, self.ambient_pressure);
+        let orifice = match self.vent {
+            Some(vent) if inflow.vent_open => {
+                let area = vent.open_area(pressure - self.ambient_pressure);
+                self.orifice.wider(self.discharge_coefficient * area)
+            }
+            _ => self.orifice,
+        };
+        let outflow = orifice.mass_flow(pressure, state.mass / volume, self.ambient_pressure);
         let (mass_out, enthalpy_out) = if pressure < self.ambient_pressure {
             // p = (cp − cv) ρ T outside.
             let density = self.ambient_pressure / ((self.cp - self.cv) * self.film_temperature);
-            let back = self.orifice.mass_flow(self.ambient_pressure, density, pressure);
+            let back = orifice.mass_flow(self.ambient_pressure, density, pressure);
             (-back, -back * self.cp * self.film_temperature)
         } else {
             (outflow, outflow * self.cp * temperature)
@@ -227,6 +239,45 @@ mod tests {
         }
     }
 
+    /// A vessel of 0.01 m³ of isothermal gas in a vacuum, with a vent, after this time (s) of steps.
+    fn vented(vent: Vent, mass: f64, inflow: Inflow, time: f64) -> (Gas, GasState) {
+        let heat_transfer = HeatTransfer::Isothermal;
+        let supply = GasSupply { heat_transfer, vent: Some(vent), ..nitrogen_supply() };
+        let gas = Gas::new(&supply, 293.0, 1.0);
+        let mut state = gas.at_temperature(mass, 293.0);
+        for _ in 0..20_000 {
+            state = gas.step(state, 0.01, 0.01, time / 20_000.0, inflow).state;
+        }
+        (gas, state)
+    }
+
+    #[test]
+    fn a_vented_vessel_empties_exponentially_and_a_relief_valve_holds_its_pressure() {
+        let vent = Vent { area: 1e-4, from: 0.0, to: 1.0, opens_at: 0.0, full_at: 0.0 };
+        // Choked isothermal blow-down: m = m0 exp(−t C_d A √(R T) f/V), f of the choked flow.
+        let open = Inflow { vent_open: true, ..Inflow::default() };
+        let (gas, state) = vented(vent, 0.01, open, 0.5);
+        let speed = (NITROGEN.gas_constant * 293.0).sqrt() * gas.orifice.choked_factor;
+        let discharge = nitrogen_supply().discharge_coefficient;
+        let expected = 0.01 * libm::exp(-0.5 * discharge * 1e-4 * speed / 0.01);
+        assert!((state.mass / expected - 1.0).abs() < 1e-6, "{} {expected}", state.mass);
+        // It is shut.
+        assert_eq!(vented(vent, 0.01, Inflow::default(), 0.5).1.mass, 0.01);
+        // With an inflow the pressure rests where the valve lets out as much: A(p) p f √(1/(R T)) = ṁ.
+        let valve = Vent { opens_at: 2000.0, full_at: 3000.0, ..vent };
+        let flow = Inflow { mass_flow_rate: 2e-4, temperature_flow: 2e-4 * 293.0, vent_open: true };
+        let (gas, state) = vented(valve, 0.0, flow, 16.0);
+        let pressure = gas.pressure(state, 0.01);
+        let out = discharge * valve.open_area(pressure) * pressure * gas.orifice.choked_factor
+            / (NITROGEN.gas_constant * 293.0).sqrt();
+        assert!(
+            (out / 2e-4 - 1.0).abs() < 1e-6 && pressure > 2000.0 && pressure < 3000.0,
+            "{pressure}"
+        );
+        // Below its opening pressure it is shut.
+        assert_eq!(vented(valve, 1e-4, open, 0.5).1.mass, 1e-4);
+    }
+
     #[test]
     fn gas_enters_through_the_leak_from_a_higher_ambient_pressure() {
         let supply = GasSupply {
@@ -262,7 +313,8 @@ mod tests {
     fn isothermal_heat_closes_the_energy_balance() {
         let gas = gas(HeatTransfer::Isothermal, 1e-4);
         let state = gas.at_temperature(0.002, 293.0);
-        let inflow = Inflow { mass_flow_rate: 0.01, temperature_flow: 0.01 * 350.0 };
+        let inflow =
+            Inflow { mass_flow_rate: 0.01, temperature_flow: 0.01 * 350.0, vent_open: false };
         let rates = gas.rates(state, 0.1, 0.7, inflow);
         let balance = rates.enthalpy_in - rates.enthalpy_out - rates.work + rates.heat;
         assert!((balance - rates.internal_energy).abs() < 1e-12 * rates.enthalpy_in);

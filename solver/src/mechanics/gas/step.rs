@@ -205,7 +205,8 @@ mod tests {
 
     #[test]
     fn steps_converge_to_second_order() {
-        let inflow = Inflow { mass_flow_rate: 0.004, temperature_flow: 0.004 * 320.0 };
+        let inflow =
+            Inflow { mass_flow_rate: 0.004, temperature_flow: 0.004 * 320.0, vent_open: false };
         for heat in [HeatTransfer::Coefficient(3.0), HeatTransfer::Isothermal] {
             let gas = gas(heat, 2e-5);
             let run = |steps: u32| {
@@ -226,7 +227,8 @@ mod tests {
 
     #[test]
     fn mass_and_energy_are_conserved() {
-        let inflow = Inflow { mass_flow_rate: 0.004, temperature_flow: 0.004 * 320.0 };
+        let inflow =
+            Inflow { mass_flow_rate: 0.004, temperature_flow: 0.004 * 320.0, vent_open: false };
         for heat in [HeatTransfer::Coefficient(3.0), HeatTransfer::Isothermal] {
             for mass in [0.0, 1e-12, 1e-3] {
                 let gas = gas(heat, 2e-5);

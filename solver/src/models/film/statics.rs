@@ -180,6 +180,7 @@ pub fn reference_scene(scene: &Scene) -> Scene {
             ambient_pressure: 0.0,
             heat_transfer: HeatTransfer::Coefficient(0.0),
             leak_area: 0.0,
+            vent: None,
             discharge_coefficient: 1.0,
             ..scene.gas.clone()
         },

@@ -215,7 +215,16 @@ pub static KEYS: &[Key] = &[
         "Area of the leak orifice. It flows both ways: gas of the same species enters at film \
           temperature where ambient_pressure is above the pressure inside."),
     key("gas.discharge_coefficient", FRACTION, Number(1.0), "0.62",
-        "Discharge coefficient of the leak orifice."),
+        "Discharge coefficient of the leak orifice and of the vent."),
+    key("gas.vent_area", likely(from(Dimension::Area, 0.0, 100.0), 0.0, 0.05), Number(0.0), "\"1 cm2\"",
+        "Area of a vent beside the leak, when it is fully open."),
+    key("gas.vent_from", CLOCK, Number(0.0), "\"0.2 s\"", "Time from which the vent can be open."),
+    key("gas.vent_to", CLOCK, Absent("solver.end_time"), "\"0.25 s\"", "Time at which the vent closes."),
+    key("gas.vent_opens_at", likely(from(Dimension::Pressure, 0.0, 1e9), 0.0, 1e7), Number(0.0), "\"2 kPa\"",
+        "Overpressure at which the vent begins to open, as a relief valve does; 0: it is fully open at any pressure."),
+    key("gas.vent_full_at", likely(from(Dimension::Pressure, 0.0, 1e9), 0.0, 1e7),
+        Absent("1.1 times gas.vent_opens_at"), "\"3 kPa\"",
+        "Overpressure at which the vent is fully open."),
 
     key("contact.distance", likely(above(Dimension::Length, 0.0, 0.1), 1e-6, 0.02),
         Absent("0.4 of the design's reference gap; of a mesh, 0.4 of its smallest gap"), "\"0.6 mm\"",

@@ -85,7 +85,11 @@ pub fn nitrogen_filling(initial_mass: f64, initial_temperature: f64) -> Filling 
 /// Film in motion while gas enters at this rate (kg/s) and temperature (K).
 pub fn inflow(rate: f64, temperature: f64) -> Phase {
     Phase {
-        inflow: Inflow { mass_flow_rate: rate, temperature_flow: rate * temperature },
+        inflow: Inflow {
+            mass_flow_rate: rate,
+            temperature_flow: rate * temperature,
+            vent_open: false,
+        },
         ..Phase::default()
     }
 }
