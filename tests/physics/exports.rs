@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use billow_solver::geometry::fold::Assignment;
-use billow_solver::geometry::mesh_io::{fold, obj};
+use billow_solver::geometry::mesh_io::{fold, obj, obj_reader};
 
 use crate::geometry::{paper_design, solved};
 use crate::prelude::*;
@@ -65,27 +65,24 @@ fn obj_keeps_every_digit_of_the_mesh() {
 }
 
 #[test]
-fn developed_obj_has_the_area_of_the_film() {
+fn developed_obj_is_the_reference_of_the_other_shapes() {
     let pattern = solved(&paper_design());
-    let text = obj::developed(&pattern, "developed");
-    let mut vertices: Vec<[f64; 2]> = Vec::new();
+    let mesh = Mesh::new(&pattern, 3, Shape::Stowed(0.04)).expect("foldable");
+    let surface = obj_reader::read(&obj::developed(&pattern, &mesh, "developed")).expect("OBJ");
+    assert_eq!(surface.faces.len(), mesh.triangles.len());
     let mut area = 0.0;
-    for line in text.lines() {
-        let mut words = line.split_whitespace();
-        match words.next() {
-            Some("v") => {
-                let at: Vec<f64> = words.map(|w| w.parse().expect("a number")).collect();
-                vertices.push([at[0], at[1]]);
-            }
-            Some("f") => {
-                let nodes: Vec<usize> = words.map(|w| w.parse().expect("an index")).collect();
-                for (i, node) in nodes.iter().enumerate() {
-                    let (p, q) = (vertices[node - 1], vertices[nodes[(i + 1) % nodes.len()] - 1]);
-                    area += 0.5 * (p[0] * q[1] - p[1] * q[0]);
-                }
-            }
-            _ => {}
+    for (face, reference) in surface.faces.iter().zip(&mesh.reference) {
+        let flat = [0, 1, 2].map(|k| surface.vertices[face.corners[k] as usize].xy());
+        for k in 0..3 {
+            let (drawn, real) =
+                (flat[(k + 1) % 3] - flat[k], reference[(k + 1) % 3] - reference[k]);
+            assert!((drawn.norm() - real.norm()).abs() < 1e-9, "{face:?}");
         }
+        area += 0.5 * (flat[1] - flat[0]).perp(&(flat[2] - flat[0]));
     }
-    assert!((area / pattern.film_area() - 1.0).abs() < 1e-12, "{area}");
+    assert!((area / pattern.film_area() - 1.0).abs() < 1e-9, "{area}");
+    // One sheet, cut open along its seam, and two caps.
+    let seam = 3 * pattern.design.storeys as usize + 1;
+    let rings = 2 * 3 * pattern.design.panels as usize;
+    assert_eq!(surface.vertices.len(), mesh.positions.len() + seam + rings);
 }

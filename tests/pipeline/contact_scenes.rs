@@ -146,15 +146,76 @@ fn the_force_on_a_plate_is_the_weight_of_the_film() {
 }
 
 #[test]
-fn contact_of_film_that_touches_film_is_off() {
+fn film_that_touches_film_at_the_start_loses_contact_there_alone() {
+    // Two faces of another sheet lie on the first one; the others of it are 1 mm above.
     let two = format!("{}{}", sheet(0.0), sheet(0.0).replace("f ", "#"));
     let twice = two.clone() + "f 10 11 14\nf 10 14 13\n";
-    let scene = json!({"mesh": {"positions": "sheet.obj"}, "solver": {"end_time": "1 ms"}});
-    let folder = scene_folder(&scene, &[("sheet.obj", &twice)]);
-    // Film that lies on film has no side: by default contact is off, with a note.
+    let mut scene = json!({"mesh": {"positions": "sheet.obj"}, "solver": {"end_time": "1 ms"}});
+    let files = [("sheet.obj", twice.as_str())];
+    let folder = scene_folder(&scene, &files);
     let output = solve(folder.path(), &["scene.json"], "");
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert!(stderr(&output).contains("film touches film at the start"));
+    let note = "film touches film at the start, in ";
+    assert!(stderr(&output).contains(note), "{}", stderr(&output));
     let summary: Value = serde_json::from_slice(&output.stdout).expect("a summary");
-    assert!(summary["notes"][0].as_str().is_some_and(|note| note.contains("touches film")));
+    assert!(summary["notes"][0].as_str().is_some_and(|text| text.contains("have no contact")));
+    assert!(number(&summary, "/contact/distance") > 1e-5, "the other pairs have theirs");
+    // A file that asks for contact must say that it goes without here.
+    scene["contact"] = json!({"friction": 0.1});
+    refused(&scene, &files, &[note, "the face on line", "contact.ignore_start true"]);
+    scene["contact"]["ignore_start"] = json!(true);
+    assert_eq!(solved(&scene, &files)["passages"], 0);
+}
+
+#[test]
+fn film_that_passes_through_film_at_the_start_is_refused_with_its_faces() {
+    // A triangle that stands in a sheet, and one far from it.
+    let stands = format!(
+        "{}v 0.03 0.03 -0.02\nv 0.05 0.03 0.05\nv 0.03 0.05 0.05\nf 10 11 12\n",
+        sheet(0.0)
+    );
+    let mut scene = json!({"mesh": {"positions": "sheet.obj"}, "solver": {"end_time": "1 ms"}});
+    let files = [("sheet.obj", stands.as_str())];
+    let texts = ["contact", "film passes through film at the start", "(vertices 10 11 12"];
+    refused(&scene, &files, &texts);
+    scene["contact"] = json!({"ignore_start": true});
+    let summary = solved(&scene, &files);
+    assert_eq!((&summary["passages"], &summary["intersections"]), (&json!(0), &json!(0)));
+    scene["contact"] = json!({"enabled": false});
+    assert!(solved(&scene, &files)["passages"].is_null());
+}
+
+/// One near pair does not decide the contact distance of all film.
+#[test]
+fn one_bad_spot_leaves_the_contact_distance() {
+    let distance = |spot: f64| {
+        // Layers 5 mm apart, of 10 by 10 faces, and one vertex near the other layer.
+        let mut text = String::new();
+        for z in [0.0, 0.005] {
+            for (i, j) in (0..=10).flat_map(|i| (0..=10).map(move |j| (i, j))) {
+                let z = if z > 0.0 && (i, j) == (5, 5) { spot } else { z };
+                let _ = writeln!(text, "v {} {} {z}", 0.1 * f64::from(i), 0.1 * f64::from(j));
+            }
+        }
+        for (layer, i, j) in [0, 121]
+            .into_iter()
+            .flat_map(|l| (0..10).flat_map(move |i| (0..10).map(move |j| (l, i, j))))
+        {
+            let at = |i: u32, j: u32| layer + 11 * i + j + 1;
+            let _ = writeln!(
+                text,
+                "f {} {} {} {}",
+                at(i, j),
+                at(i + 1, j),
+                at(i + 1, j + 1),
+                at(i, j + 1)
+            );
+        }
+        let scene = json!({"mesh": {"positions": "layers.obj"}, "solver": {"end_time": "1 ms"}});
+        let summary = solved(&scene, &[("layers.obj", &text)]);
+        assert_eq!(summary["passages"], 0);
+        number(&summary, "/contact/distance")
+    };
+    let regular = distance(0.005);
+    assert!((distance(1e-5) / regular - 1.0).abs() < 0.01, "{regular}");
 }

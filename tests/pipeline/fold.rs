@@ -77,7 +77,24 @@ fn pattern_and_shapes_are_written() {
         assert!(read(name).lines().any(|line| line.starts_with("f ")), "{name}");
     }
     let names = std::fs::read_dir(&out).expect("the folder").count();
-    assert_eq!(names, 6, "no temporary file remains");
+    assert_eq!(names, 7, "no temporary file remains");
+    let simulated = fold(&format!("{PAPER} --out {} --origami-simulator", out.display()));
+    assert!(simulated.status.success(), "{}", String::from_utf8_lossy(&simulated.stderr));
+    assert!(read("crease_pattern.svg").contains("stroke=\"#0000ff\" d="));
+}
+
+#[test]
+fn the_written_scene_is_the_stowed_capsule_without_stress() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = fold(&format!("{PAPER} --subdivisions 3 --out {}", folder.path().display()));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report = crate::solve::checked(folder.path());
+    // Storeys of flat facets fit each other but for the strain of stowing; 15.117 litres of the design.
+    for stretch in report["stretch"]["start"].as_array().expect("two") {
+        assert!((stretch.as_f64().expect("a number") - 1.0).abs() < 1e-3, "{report}");
+    }
+    assert!((report["volume"].as_f64().expect("a number") / 0.015_117 - 1.0).abs() < 1e-3);
+    assert_eq!(report["notes"], Value::Array(Vec::new()));
 }
 
 #[test]

@@ -5,7 +5,9 @@ use std::fmt::Write as _;
 use billow_study::input::schema::scene_schema;
 use serde_json::{Value, json};
 
-use crate::solve::{CUBE, capsule, cube, done, number, refused, scene_folder, solve, solved};
+use crate::solve::{
+    CUBE, capsule, checked, cube, done, number, refused, scene_folder, solve, solved,
+};
 use crate::support::stderr;
 
 #[test]
@@ -49,6 +51,62 @@ fn meshes_of_other_programs_are_read() {
 }
 
 #[test]
+fn texture_coordinates_are_the_stress_free_shape_on_request() {
+    let gas = json!({"pressure": "0.1 Pa"});
+    // A sheet of 1 m by 1 m, flattened to half of it in the units of its texture.
+    let sheet = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 0.5 0\nvt 0.5 0.5\nvt 0 0.5\nf 1/1 2/2 3/3 4/4\n";
+    let files = [("cube.obj", sheet)];
+    let scene = |unit: Value| {
+        let mut scene = cube(&json!({"positions": "cube.obj", "texture_unit": unit}), &gas);
+        scene["supports"] = json!([{"on": "boundary", "fix": "xyz"}]);
+        scene
+    };
+    let folder = scene_folder(&scene(json!("2 m")), &files);
+    let report = checked(folder.path());
+    for key in ["/area", "/stretch/start/0", "/stretch/start/1"] {
+        assert!((number(&report, key) - 1.0).abs() < 1e-12, "{report}");
+    }
+    let folder = scene_folder(&scene(json!("1 m")), &files);
+    let report = checked(folder.path()).to_string();
+    assert!(report.contains("stretched to 2.0000 times"), "{report}");
+    let plain = [("cube.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")];
+    refused(&scene(json!("1 m")), &plain, &["mesh.texture_unit", "the face on line 5", "vt u v"]);
+}
+
+#[test]
+fn an_inflow_is_a_table_in_the_scene_or_a_file() {
+    let scene = |table: Value| {
+        let windows = json!([{"from": "1 ms", "table": table}]);
+        let gas = json!({"initial_pressure": "0.1 Pa", "windows": windows});
+        let mut scene = cube(&json!({"positions": "cube.obj"}), &gas);
+        scene["solver"]["end_time"] = json!("12 ms");
+        scene
+    };
+    let csv = "time (ms),mass_flow_rate (g/s)\n0,0\n4,2\n10,2\n";
+    let files = [("cube.obj", CUBE), ("flow.csv", csv)];
+    let points = json!([["0 s", 0], ["4 ms", "2 g/s"], ["10 ms", "2 g/s"]]);
+    let inside = solved(&scene(points), &files);
+    // 4 ms of 1 g/s in the mean, then 6 ms of 2 g/s; 0.1 Pa of nitrogen before.
+    let before = 0.1 / (296.8 * 293.0);
+    let mass = number(&inside, "/gas_mass") - before;
+    assert!((mass / 16e-6 - 1.0).abs() < 1e-3, "{mass}");
+    let from_file = solved(&scene(json!("flow.csv")), &files);
+    assert_eq!(from_file["gas_mass"], inside["gas_mass"]);
+    for (table, texts) in [
+        (json!([[0, 1]]), vec!["gas.windows[0].table", "has 1 points"]),
+        (json!([[0, 1], [0, 2]]), vec!["do not ascend"]),
+        (json!([[0, 1], [1, -2]]), vec!["not a time and a mass flow rate", "CSV file"]),
+        (json!([[0, "1 m"], [1, 2]]), vec!["not a time and a mass flow rate"]),
+        (json!(7), vec!["neither a list nor a file"]),
+    ] {
+        refused(&scene(table), &files, &texts);
+    }
+    let mut both = scene(json!("flow.csv"));
+    both["gas"]["windows"][0]["mass_flow_rate"] = json!("1 g/s");
+    refused(&both, &files, &["gas.windows[0].mass_flow_rate", "beside table"]);
+}
+
+#[test]
 fn a_vertex_of_closure_that_no_rim_places_is_refused() {
     let open = CUBE.lines().take(15).fold(String::new(), |text, line| text + line + "\n");
     // Three of four faces about the centre: one edge is free.
@@ -57,7 +115,7 @@ fn a_vertex_of_closure_that_no_rim_places_is_refused() {
     let scene =
         cube(&json!({"positions": "cube.obj", "closure": "lid"}), &json!({"pressure": "0.1 Pa"}));
     solved(&scene, &[("cube.obj", &whole)]);
-    let texts = ["mesh.closure", "OBJ vertex 9", "belongs to no film", "fix xyz"];
+    let texts = ["mesh.closure", "vertex 9", "belongs to no film", "fix xyz"];
     refused(&scene, &[("cube.obj", &part)], &texts);
 }
 
@@ -196,8 +254,11 @@ fn a_check_runs_nothing_and_says_what_the_film_is() {
     let scene = cube(&json!({"positions": "lid.obj"}), &json!({"initial_pressure": 1}));
     let file = with_lid(1e-4);
     let folder = scene_folder(&scene, &[("lid.obj", file.as_str())]);
-    let checked = solve(folder.path(), &["scene.json", "--check"], "");
+    let checked = solve(folder.path(), &["scene.json", "--check", "--picture", "mesh.svg"], "");
     assert_eq!(checked.status.code(), Some(2), "{}", stderr(&checked));
+    // Also a mesh that is refused is drawn, with a cross where it leaks.
+    let picture = std::fs::read_to_string(folder.path().join("mesh.svg")).unwrap();
+    assert!(picture.contains(">1</text>") && picture.contains("1: "), "{picture}");
     let checked = solve(folder.path(), &["scene.json", "--check", "--weld", "0.2mm"], "");
     let report: Value = serde_json::from_slice(&checked.stdout).unwrap();
     assert_eq!(report["status"], "checked");
@@ -228,7 +289,7 @@ fn every_piece_has_its_sense_and_cavities_theirs() {
     let scene = cube(&json!({"positions": "two.obj"}), &gas);
     let beside = |outward| outer.clone() + &block([0.5; 3], [2.0, 0.0, 0.0], outward, 9);
     near_one(number(&solved(&scene, &[("two.obj", &beside(true))]), "/volume") / 1.125);
-    let texts = ["piece 2 of 2", "OBJ vertex 10", "wound inward", "flip the normals of this piece"];
+    let texts = ["piece 2 of 2", "vertex 10", "wound inward", "flip the normals of this piece"];
     refused(&scene, &[("two.obj", &beside(false))], &texts);
     let inside = |outward| outer.clone() + &block([0.5; 3], [0.25; 3], outward, 9);
     let cavity = solved(&scene, &[("two.obj", &inside(false))]);
@@ -280,6 +341,6 @@ fn size_stretch_place_and_step_are_judged_before_a_run() {
     refused(
         &scene,
         &[("sliver.obj", &sliver)],
-        &["solver.step_limit", "the face on line", "OBJ vertices 5 6 9"],
+        &["solver.step_limit", "the face on line", "vertices 5 6 9"],
     );
 }

@@ -29,6 +29,13 @@ pub(crate) fn done(folder: &Path, arguments: &[&str], simd: &str) -> Value {
     without_wall(&output)
 }
 
+/// What `--check` prints of the scene in a folder.
+pub(crate) fn checked(folder: &Path) -> Value {
+    let output = solve(folder, &["scene.json", "-q", "--check"], "");
+    assert!(output.status.success(), "{}", stderr(&output));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
 fn without_wall(output: &Output) -> Value {
     let mut summary: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert!(summary.as_object_mut().unwrap().remove("wall_seconds").unwrap().is_number());

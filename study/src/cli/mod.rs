@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Parser, Subcommand};
 
 use crate::platform::error::{Error, InputError, Result};
@@ -29,6 +29,7 @@ mod keys;
 mod limits;
 mod memory;
 mod merge;
+mod mesh_picture;
 pub mod options;
 pub mod picture;
 mod plan;
@@ -176,7 +177,12 @@ pub fn refused_line(refused: &clap::Error) -> Error {
         "no command is given".clone_into(&mut text);
     }
     let lines = text.lines().map(str::trim_end).filter(|line| !line.is_empty());
-    let lines: Vec<&str> = lines.take_while(|line| !line.starts_with("For more info")).collect();
+    let lines = lines.take_while(|line| !line.starts_with("For more info"));
+    let elsewhere = elsewhere(refused);
+    let is_tip = |line: &str| {
+        line.starts_with("  tip: to pass") || elsewhere.is_some() && line.starts_with("  tip:")
+    };
+    let lines: Vec<&str> = lines.filter(|line| !is_tip(line)).collect();
     let problem = lines.join("\n");
     Error::Input(InputError {
         file: "command line".to_owned(),
@@ -187,8 +193,39 @@ pub fn refused_line(refused: &clap::Error) -> Error {
             .unwrap_or(&problem)
             .replace("Usage: ", "  usage: "),
         allowed: String::new(),
-        hint: "the same command with --help".to_owned(),
+        hint: elsewhere.unwrap_or_else(|| "the same command with --help".to_owned()),
     })
+}
+
+/// Words of other programs, and the command that does what they mean.
+const SYNONYMS: [(&str, &str); 5] = [
+    ("rank", "compare STUDY --rank"),
+    ("resume", "run STUDY"),
+    ("plot", "chart STUDY"),
+    ("show", "table STUDY"),
+    ("check", "solve SCENE --check"),
+];
+
+/// Where a refused word or option is known: the command that it means, or those that take it.
+fn elsewhere(refused: &clap::Error) -> Option<String> {
+    let word = |kind| match refused.get(kind) {
+        Some(ContextValue::String(word)) => Some(word.as_str()),
+        _ => None,
+    };
+    if let Some(word) = word(ContextKind::InvalidSubcommand) {
+        let (_, meant) = SYNONYMS.iter().find(|(synonym, _)| *synonym == word)?;
+        return Some(format!("billow {meant}"));
+    }
+    let option = word(ContextKind::InvalidArg)?.strip_prefix("--")?;
+    let option = option.split(['=', ' ']).next()?;
+    let program = Command::augment_subcommands(clap::Command::new("billow"));
+    let takes = |command: &&clap::Command| {
+        command.get_arguments().any(|argument| argument.get_long() == Some(option))
+    };
+    let commands: Vec<&str> =
+        program.get_subcommands().filter(takes).map(clap::Command::get_name).collect();
+    (refused.kind() == ErrorKind::UnknownArgument && !commands.is_empty())
+        .then(|| format!("--{option} is an option of {}", commands.join(", ")))
 }
 
 /// The exit codes below `billow --help`.

@@ -7,12 +7,13 @@ use std::time::{Duration, Instant};
 use billow_solver::geometry::mesh_io::obj;
 
 use super::options::{OutputOptions, QuietOption, SetOption};
-use super::{Format, instruction_set, output_error};
+use super::{Format, instruction_set, mesh_picture, output_error};
+use crate::input::value::brief_number;
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, check_output_path, disk_error, write_output};
 use crate::platform::stop::Stop;
-use crate::print::print_rows;
+use crate::print::{duration, print_rows};
 use crate::scene::file::SceneFile;
 use crate::scene::solve::{self, Ended, Pauses, Solved};
 use crate::scene::{check, summary};
@@ -26,6 +27,9 @@ pub struct Args {
     /// Judge the mesh and print what it is: pieces, volume, free edges, stretch, step. Runs nothing.
     #[arg(long, conflicts_with_all = ["out", "shape", "checkpoint", "resume"])]
     pub check: bool,
+    /// With --check: draw the mesh, with a cross at each place that the judgement names, as .svg or .png.
+    #[arg(long, value_name = "FILE", requires = "check")]
+    pub picture: Option<PathBuf>,
     /// Join vertices nearer to each other than this distance, as in 0.1mm: --set mesh.weld.
     #[arg(long, value_name = "DISTANCE")]
     pub weld: Option<String>,
@@ -66,7 +70,11 @@ const PROGRESS_INTERVAL: Duration = Duration::from_secs(5);
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let mut sets = args.set.set.clone();
     sets.extend(args.weld.iter().map(|distance| format!("mesh.weld={distance}")));
-    let scene = SceneFile::load(&args.scene, &sets, instruction_set::selected()?)?;
+    let scene = SceneFile::load(&args.scene, &sets, instruction_set::selected()?);
+    if let Some(path) = &args.picture {
+        mesh_picture::write(path, &args.scene, &sets, &scene)?;
+    }
+    let scene = scene?;
     check_files(args, &scene)?;
     if !args.quiet.quiet {
         for note in &scene.notes {
@@ -75,6 +83,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     }
     if args.check {
         return print(&check::report(&scene), args, out);
+    }
+    if !args.quiet.quiet && args.resume.is_none() {
+        forecast(&scene);
     }
     let solved = solve(args, &scene)?;
     let summary = summary::summary(&scene, &solved);
@@ -91,7 +102,22 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let stop = &summary["stop"];
     let location = stop["location"].as_str().unwrap_or_default();
     let time = stop["time"].as_f64().map_or_else(String::new, |time| format!(" at {time} s"));
-    Err(Error::JobsFailed(format!("{}: {}{time}: {location}", args.scene.display(), solved.status)))
+    let next = stop["next"].as_array().into_iter().flatten().filter_map(|text| text.as_str());
+    let next = next.fold(String::new(), |all, text| all + "\n  next: " + text);
+    let file = args.scene.display();
+    Err(Error::JobsFailed(format!("{file}: {}{time}: {location}{next}", solved.status)))
+}
+
+/// Says on stderr what the run will take.
+fn forecast(scene: &SceneFile) {
+    let Some([step, steps, seconds]) = check::forecast(scene) else { return };
+    eprintln!(
+        "billow: forecast: {} elements, {} steps of {} s, about {} of core time",
+        scene.film.shell.triangles.len(),
+        brief_number(steps),
+        brief_number(step),
+        duration(libm::ceil(seconds))
+    );
 }
 
 fn print(summary: &serde_json::Value, args: &Args, out: &mut dyn Write) -> Result<()> {

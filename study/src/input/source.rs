@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::fmt::{Display, Write as _};
+use std::rc::Rc;
 
 use crate::input::json::Json;
 use crate::input::plausible::Implausible;
@@ -14,8 +15,8 @@ pub(crate) struct Source {
     pub file: String,
     /// Dotted keys, and the flag that sets each.
     pub sets: Vec<(String, String)>,
-    /// Warnings about values, in the order of reading.
-    warnings: RefCell<Vec<Warning>>,
+    /// Warnings about values, in the order of reading; those of a copy too.
+    warnings: Rc<RefCell<Vec<Warning>>>,
 }
 
 /// A warning about the values of one place: a key, or all values of an axis.
@@ -30,7 +31,7 @@ struct Warning {
 
 impl Source {
     pub fn new(file: &str) -> Self {
-        Self { file: file.to_owned(), sets: Vec::new(), warnings: RefCell::default() }
+        Self { file: file.to_owned(), sets: Vec::new(), warnings: Rc::default() }
     }
 
     /// Keeps a warning about a value that is read. Further values of a list are counted.

@@ -54,14 +54,19 @@ impl Costs {
     /// Time of a scene on one core, s, after those that were asked for before.
     pub fn seconds(&mut self, scene: &Scene) -> f64 {
         let Some(cost) = self.of(scene) else { return SECONDS_WITHOUT_FILM };
-        let unfolding = (UNFOLDING / scene.solver.end_time).min(1.0);
-        let [first, later] = NS_PER_ELEMENT_STEP;
-        let step = 1e-9 * (first * unfolding + later * (1.0 - unfolding));
         let elements = cost.elements as f64;
+        let motion = film_seconds(elements, cost.steps as f64, scene.solver.end_time);
         let is_new = models::reference_scene(scene)
             .is_some_and(|reference| self.states.insert(JobId::of(&reference)));
         let [coefficient, exponent] = STATIC_SECONDS;
         let states = if is_new { coefficient * libm::pow(elements, exponent) } else { 0.0 };
-        elements * cost.steps as f64 * step + states
+        motion + states
     }
+}
+
+/// Time of this number of elements and steps until an end time (s) on one core, s.
+pub fn film_seconds(elements: f64, steps: f64, end_time: f64) -> f64 {
+    let unfolding = (UNFOLDING / end_time).min(1.0);
+    let [first, later] = NS_PER_ELEMENT_STEP;
+    1e-9 * elements * steps * (first * unfolding + later * (1.0 - unfolding))
 }

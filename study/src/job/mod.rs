@@ -15,6 +15,7 @@ pub mod result_limit;
 pub mod row;
 pub mod status;
 pub mod suggestions;
+pub mod surroundings;
 
 pub use id::{JobId, canonical_json};
 pub use point::{Job, Parameters, label};

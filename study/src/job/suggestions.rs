@@ -129,7 +129,7 @@ impl Failure<'_> {
                 ]
             }
             Status::Failed(FailureKind::Interpenetrated) if is_film => vec![
-                "layers farther apart at the start: design.stowed_height; film in one plane has no side",
+                "layers farther apart at the start: design.stowed_height, or those of the mesh",
             ],
             _ => Vec::new(),
         }

@@ -14,6 +14,7 @@ use crate::input::keys::{MODELS, Model};
 use crate::input::value::{Value, brief_number};
 use crate::job::point::Point;
 use crate::job::row::ColumnId;
+use crate::job::surroundings::Surroundings;
 use crate::study::ground::pressure_below_ambient;
 use crate::study::{Meshes, Study, features, meshes_text};
 
@@ -59,6 +60,7 @@ fn of_points(study: &Study) -> Vec<String> {
         ));
     }
     lines.extend(below_ambient(study));
+    lines.extend(air_outside(study));
     lines.extend(refused_by_integrators(study));
     lines.extend(
         MODELS.iter().filter(|model| has(model.kind)).filter_map(|model| ignored(study, model)),
@@ -132,7 +134,7 @@ fn of_meshes(study: &Study) -> Option<String> {
     })
 }
 
-/// Why points of one mesh have no known error, and what follows; `None` where all have one.
+/// Whether the mesh errors of points of one mesh are known; if not, why not and what follows.
 fn without_error(study: &Study) -> Option<String> {
     let table = MeshErrors::shipped();
     let gap = |(scene, features): (&Scene, Features)| {
@@ -144,7 +146,11 @@ fn without_error(study: &Study) -> Option<String> {
     };
     let meshes = study.meshes();
     let points = study.points().iter().filter(|_| meshes.list.is_empty() || meshes.of_pilots);
-    let gap = points.filter_map(features).find_map(gap)?;
+    let mut points = points.filter_map(features).peekable();
+    points.peek()?;
+    let Some(gap) = points.find_map(gap) else {
+        return Some("mesh error: known at each point, from the table of mesh errors".to_owned());
+    };
     let known = format!("note: the mesh error of some points is not known ({gap})");
     if meshes.of_pilots {
         let meshes = meshes_text(&meshes.list);
@@ -187,6 +193,19 @@ fn below_ambient(study: &Study) -> Option<String> {
             brief_number(smallest)
         )
     })
+}
+
+/// What the air around the capsules does that no model has, at the point where it does most.
+fn air_outside(study: &Study) -> Vec<String> {
+    let outside = study.points().iter().filter_map(|point| {
+        Some(Surroundings::of_capsule(&point.job.scene, point.solved.as_ref()?))
+    });
+    let most =
+        outside.fold(Surroundings { lift: 0.0, moved_mass: 0.0 }, |most, one| Surroundings {
+            lift: most.lift.max(one.lift),
+            moved_mass: most.moved_mass.max(one.moved_mass),
+        });
+    most.notes().into_iter().map(|note| format!("note: {note}")).collect()
 }
 
 /// A note on points with friction whose integrator has none: each ends as invalid.

@@ -21,6 +21,24 @@ pub fn svg(pattern: &FoldPattern, flap: Option<f64>) -> String {
     Drawing::new(pattern, flap.map(|width| width * MM)).draw()
 }
 
+/// The lines of a pattern alone, each with its colour as Origami Simulator reads it: mountains red, valleys blue, edges
+/// black (A. Ghassaei, its `pattern.js`).
+pub fn for_origami_simulator(pattern: &FoldPattern) -> String {
+    let mut drawing = Drawing::new(pattern, None);
+    for (name, colour, assignment) in [
+        ("cut", "#000000", Assignment::Boundary),
+        ("mountain", "#ff0000", Assignment::Mountain),
+        ("valley", "#0000ff", Assignment::Valley),
+    ] {
+        drawing.layer(name, colour, 0.03 * drawing.letter, "none");
+        drawing.stroke = Some(colour);
+        drawing.lines(assignment);
+        drawing.page.close();
+    }
+    let title = drawing.title();
+    drawing.page.finish(drawing.size.x, drawing.size.y, &title)
+}
+
 struct Drawing<'a> {
     pattern: &'a FoldPattern,
     /// The developed film, mm.
@@ -32,6 +50,8 @@ struct Drawing<'a> {
     size: Vector2<f64>,
     /// Size of the texts, mm: proportional to the sheet.
     letter: f64,
+    /// Colour of each line, where it is not that of its layer alone.
+    stroke: Option<&'static str>,
     page: Page,
 }
 
@@ -54,7 +74,7 @@ impl<'a> Drawing<'a> {
         let below = 7.0 * letter;
         let origin = Vector2::new(low.x - margin, high.y + margin);
         let size = high - low + Vector2::new(2.0 * margin, 2.0 * margin + below);
-        Self { pattern, sheet, flap, origin, size, letter, page: Page::new() }
+        Self { pattern, sheet, flap, origin, size, letter, stroke: None, page: Page::new() }
     }
 
     fn draw(mut self) -> String {
@@ -68,13 +88,7 @@ impl<'a> Drawing<'a> {
             ("valley", "#0072b2", line, &dashes, Assignment::Valley),
         ] {
             self.layer(name, colour, width, dashes);
-            let creases = self.pattern.creases().into_iter();
-            for crease in creases.filter(|crease| crease.assignment == assignment) {
-                self.path(&crease.ends.map(|end| self.corner(end)), "");
-            }
-            if assignment == Assignment::Boundary {
-                self.sheet.caps.clone().iter().for_each(|cap| self.path(cap, "z"));
-            }
+            self.lines(assignment);
             self.page.close();
         }
         if let Some(width) = self.flap {
@@ -104,6 +118,17 @@ impl<'a> Drawing<'a> {
         self.page.finish(self.size.x, self.size.y, &title)
     }
 
+    /// The lines of one kind.
+    fn lines(&mut self, assignment: Assignment) {
+        let creases = self.pattern.creases().into_iter();
+        for crease in creases.filter(|crease| crease.assignment == assignment) {
+            self.path(&crease.ends.map(|end| self.corner(end)), "");
+        }
+        if assignment == Assignment::Boundary {
+            self.sheet.caps.clone().iter().for_each(|cap| self.path(cap, "z"));
+        }
+    }
+
     /// Opens a layer of lines.
     fn layer(&mut self, name: &str, colour: &str, width: f64, dashes: &str) {
         let style = format!("stroke=\"{colour}\" stroke-width=\"{width:.3}\"");
@@ -129,7 +154,7 @@ impl<'a> Drawing<'a> {
     fn path(&mut self, positions: &[Vector2<f64>], end: &str) {
         let places = positions.iter().map(|position| self.place(*position));
         let places: Vec<String> = places.map(|[x, y]| format!("{x:.4},{y:.4}")).collect();
-        self.page.path("none", None, &format!("M{}{end}", places.join(" ")));
+        self.page.path("none", self.stroke, &format!("M{}{end}", places.join(" ")));
     }
 
     fn flaps(&mut self, width: f64) {
@@ -267,6 +292,10 @@ mod tests {
         for length in ["523.17", "446.07", "829.58", "381.91"] {
             assert!(plain.contains(&format!(">{length}</text>")), "{length}");
         }
+        let simulated = for_origami_simulator(&pattern);
+        let red = "<path fill=\"none\" stroke=\"#ff0000\" d=\"M";
+        assert_eq!(simulated.matches(red).count(), 2 * 6 + 3 * 5);
+        assert_eq!(layer(&simulated, "valley").len(), 18);
         // The seam and the caps have glue flaps.
         assert_eq!(layer(&svg(&pattern, Some(0.015)), "glue_flaps").len(), 3 + 2 * 6);
     }

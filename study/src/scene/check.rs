@@ -10,6 +10,8 @@ use billow_solver::scene::IntegratorKind;
 use nalgebra::Vector3;
 use serde_json::{Value as Json, json};
 
+use crate::job::cost::film_seconds;
+
 use super::file::SceneFile;
 use super::file::components::{Piece, pieces};
 
@@ -25,7 +27,7 @@ pub fn report(scene: &SceneFile) -> Json {
         let length: f64 = edges.map(|[a, b]| (at(a) - at(b)).norm()).sum();
         let first = nodes.first().copied().unwrap_or_default();
         json!({
-            "edges": nodes.len(), "length": length, "obj_vertex": vertex(first),
+            "edges": nodes.len(), "length": length, "vertex": vertex(first),
             "position": <[f64; 3]>::from(at(first)),
         })
     };
@@ -34,7 +36,7 @@ pub fn report(scene: &SceneFile) -> Json {
         let closed = !piece.faces.iter().flatten().any(|node| rims.contains(node));
         json!({
             "faces": piece.faces.len(), "volume": closed.then_some(piece.volume),
-            "obj_vertex": vertex(first), "position": <[f64; 3]>::from(at(first)),
+            "vertex": vertex(first), "position": <[f64; 3]>::from(at(first)),
         })
     };
     let mut report = json!({
@@ -52,14 +54,32 @@ pub fn report(scene: &SceneFile) -> Json {
     if let Ok(model) = FilmModel::of_shell(&scene.film.film.elastic(), shell) {
         let stretch = stretches(&model, &Field::of(&shell.positions)).map(|(stretch, _)| stretch);
         report["stretch"] = json!({"start": stretch});
-        let solver = &scene.film.solver;
-        if !solver.statics && solver.integrator == IntegratorKind::Explicit {
-            let step = 2.0 * solver.cfl / model.largest_frequency();
+        if let Some([step, steps]) = steps(scene, &model) {
             report["step"] = json!(step);
-            report["steps"] = json!(libm::ceil(solver.end_time / step));
+            report["steps"] = json!(steps);
         }
     }
     report
+}
+
+/// Length (s) and number of the steps of explicit motion, at most 2 cfl/ω each, ω the largest frequency of an element.
+fn steps(scene: &SceneFile, model: &FilmModel) -> Option<[f64; 2]> {
+    let solver = &scene.film.solver;
+    let step = 2.0 * solver.cfl / model.largest_frequency();
+    let is_explicit = !solver.statics && solver.integrator == IntegratorKind::Explicit;
+    // A step ends at each sample.
+    let interval = scene.film.outputs.sample_interval.min(solver.end_time);
+    let steps = libm::ceil(interval / step) * (solver.end_time / interval);
+    is_explicit.then(|| [step.min(interval), libm::ceil(steps)])
+}
+
+/// Length (s) and number of the steps of a run, and its time on one core, s; `None` where they are not known before.
+pub fn forecast(scene: &SceneFile) -> Option<[f64; 3]> {
+    let shell = &scene.film.shell;
+    let model = FilmModel::of_shell(&scene.film.film.elastic(), shell).ok()?;
+    let [step, steps] = steps(scene, &model)?;
+    let elements = shell.triangles.len() as f64;
+    Some([step, steps, film_seconds(elements, steps, scene.film.solver.end_time)])
 }
 
 /// Smallest, mean and largest length of an edge of the film at the start, m.

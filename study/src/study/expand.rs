@@ -15,9 +15,10 @@ use super::grid::{Axis, AxisKind, Grid};
 use super::resolve;
 use crate::input::keys::{self, KEYS};
 use crate::input::settings::Settings;
-use crate::input::source::Source;
+use crate::input::source::{Source, shown};
 use crate::input::value::{Value, json_value};
 use crate::job::point::{Infeasible, Point, Searched, Solved};
+use crate::job::surroundings::Surroundings;
 use crate::job::{Job, JobId, Parameters};
 use crate::platform::error::InputError;
 
@@ -223,6 +224,12 @@ impl<'a> Expansion<'a> {
                 Err(error) => Err(self.refused(&error)),
             })
             .map_err(|error| self.at_point(point, error))?;
+        let outside = solved.as_ref().map(|solved| Surroundings::of_capsule(&scene, solved));
+        if let Some(problem) = outside.and_then(|outside| outside.refusal()) {
+            let error =
+                self.source.error("gravity", shown(scene.gravity), problem, Surroundings::ALLOWED);
+            return Err(self.at_point(point, error));
+        }
         let parameters = self.parameters(point);
         let scene = Arc::new(scene);
         self.points.push((parameters, scene, infeasible, solved, self.searched));

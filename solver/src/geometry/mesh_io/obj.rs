@@ -1,11 +1,12 @@
 //! Writes Wavefront OBJ: vertices in m, faces counter-clockwise seen from outside, one group for each
 //! piece of film.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use nalgebra::{Vector2, Vector3};
+use nalgebra::{Isometry2, Point2, Rotation2, Translation2, Vector2, Vector3};
 
-use crate::geometry::fold::{Corner, FoldPattern};
+use crate::geometry::fold::{Corner, Facet, FoldPattern};
 use crate::geometry::mesh::{Mesh, Part};
 use crate::geometry::mesh_io::obj_reader::{Face, Surface};
 
@@ -43,32 +44,71 @@ pub fn surface(surface: &Surface, positions: &[Vector3<f64>], title: &str) -> St
     text
 }
 
-/// The developed film as OBJ, in the plane z = 0 and seen from outside: the lateral sheet, cut open along
-/// its seam, and the caps next to it.
-pub fn developed(pattern: &FoldPattern, title: &str) -> String {
-    let sheet = Sheet::new(pattern);
-    let mut text = header(title);
-    for corner in sheet.corners.iter().chain(&sheet.caps[0]).chain(&sheet.caps[1]) {
-        vertex(&mut text, Vector3::new(corner.x, corner.y, 0.0));
-    }
-    let per_ring = pattern.design.panels + 1;
-    let mut storey = None;
-    for facet in pattern.facets() {
-        if storey != Some(facet.storey) {
-            storey = Some(facet.storey);
-            let _ = writeln!(text, "g {}", name(Part::Storey(facet.storey)));
+/// The developed film as OBJ, in the plane z = 0 and seen from outside: the lateral sheet, cut open along its seam, and
+/// the caps next to it. Its faces are those of the mesh, in their order: it is the reference of every other shape.
+pub fn developed(pattern: &FoldPattern, mesh: &Mesh, title: &str) -> String {
+    let places = layout(pattern);
+    let of_piece = mesh.triangles.len() / places.len();
+    // A node of the seam, and of a ring, is at several places of the layout.
+    let grain = GRAIN * pattern.polygon_radius(0);
+    let mut vertices: BTreeMap<(u32, [i64; 2]), u32> = BTreeMap::new();
+    let (mut text, mut faces) = (header(title), String::new());
+    let mut group = None;
+    for (element, (triangle, part)) in mesh.triangles.iter().zip(&mesh.parts).enumerate() {
+        if group != Some(*part) {
+            group = Some(*part);
+            let _ = writeln!(faces, "g {}", name(*part));
         }
-        face(&mut text, &facet.corners.map(|c| c.ring * per_ring + c.corner));
+        let mut number = |corner: usize| {
+            let place = places[element / of_piece] * Point2::from(mesh.reference[element][corner]);
+            #[expect(
+                clippy::cast_possible_truncation,
+                reason = "a few lengths of a film over its grain"
+            )]
+            let rounded = [place.x, place.y].map(|x| libm::round(x / grain) as i64);
+            let next = u32::try_from(vertices.len()).unwrap_or(u32::MAX);
+            *vertices.entry((triangle[corner], rounded)).or_insert_with(|| {
+                vertex(&mut text, Vector3::new(place.x, place.y, 0.0));
+                next
+            })
+        };
+        let numbers = [number(0), number(1), number(2)];
+        face(&mut faces, &numbers);
     }
-    let mut first = per_ring * (pattern.design.storeys + 1);
-    for part in [Part::BottomCap, Part::TopCap] {
-        let _ = writeln!(text, "g {}", name(part));
-        let corners: Vec<u32> = (first..first + pattern.design.panels).collect();
-        face(&mut text, &corners);
-        first += pattern.design.panels;
-    }
-    text
+    text + &faces
 }
+
+/// Where each piece of a mesh lies in the layout, from the coordinates of its reference: the facets, then the wedges of the
+/// bottom and of the top cap.
+fn layout(pattern: &FoldPattern) -> Vec<Isometry2<f64>> {
+    let sheet = Sheet::new(pattern);
+    let middle = pattern.sheet_middle();
+    let of_facet = |facet: Facet| {
+        // The first corner of a facet has x = 0 in its reference.
+        let zero = pattern.erected_angle(facet.corners[0]);
+        let [a, b] = [0, 1].map(|k| pattern.developed(facet.corners[k], zero));
+        let [c, d] = [0, 1].map(|k| pattern.developed(facet.corners[k], middle));
+        let rotation = Rotation2::rotation_between(&(b - a), &(d - c));
+        let shift = c - rotation * a;
+        Isometry2::from_parts(Translation2::from(shift), rotation.into())
+    };
+    let panels = pattern.design.panels;
+    let wedge = 2.0 * core::f64::consts::PI / f64::from(panels);
+    let of_cap = |cap: usize| {
+        let corners = &sheet.caps[cap];
+        let centre = corners.iter().sum::<Vector2<f64>>() / corners.len() as f64;
+        // Seen from outside, the panels of the bottom go round clockwise.
+        (0..panels).map(move |panel| {
+            let steps = if cap == 0 { -f64::from(panel + 1) } else { f64::from(panel) };
+            Isometry2::new(centre, steps * wedge)
+        })
+    };
+    pattern.facets().into_iter().map(of_facet).chain(of_cap(0)).chain(of_cap(1)).collect()
+}
+
+/// Distance up to which places of one node are one vertex, over the circumradius of the bottom cap. Chosen: far above
+/// rounding, far below an element.
+const GRAIN: f64 = 1e-7;
 
 /// Gap between the pieces of a layout over the circumradius of the bottom cap. Chosen: easy to see.
 const GAP_OVER_RADIUS: f64 = 0.2;

@@ -2,14 +2,14 @@
 //!
 //! Accepted: `v x y z` (a weight or colour after them is ignored); `f` with three or more corners written
 //! `7`, `7/1`, `7//2` or `7/1/2`, 1-based or negative (counted back from the last vertex so far); names
-//! of `g` and `o`; comments; lines continued after a `\`; any line ending. Textures, normals,
-//! materials, lines and points are ignored.
+//! of `g` and `o`; texture coordinates `vt u v` and their numbers in a face; comments; lines continued after a `\`;
+//! any line ending. Normals, materials, lines and points are ignored.
 
 use std::borrow::Cow;
 
 use nalgebra::Vector3;
 
-/// Surface of an OBJ file.
+/// Surface of a mesh file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Surface {
     /// Vertices, in the units of the file.
@@ -18,6 +18,8 @@ pub struct Surface {
     pub faces: Vec<Face>,
     /// Distinct lists of group and object names that apply to faces.
     pub names: Vec<Vec<String>>,
+    /// Texture coordinates, in the units of the file.
+    pub texture: Vec<[f64; 2]>,
 }
 
 /// A face as in the file.
@@ -27,8 +29,28 @@ pub struct Face {
     pub corners: Vec<u32>,
     /// Its names, as an index into [`Surface::names`].
     pub names: usize,
-    /// Line of the file, 1-based.
-    pub line: usize,
+    /// Its texture coordinates by number, 0-based, one for each corner; none where a corner has none.
+    pub texture: Vec<u32>,
+    /// Where it is in its file.
+    pub place: Place,
+}
+
+/// Where a face is in its file: "on line 12", "number 3".
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// Line, 1-based.
+    Line(usize),
+    /// Number among the faces, 1-based.
+    Number(usize),
+}
+
+impl core::fmt::Display for Place {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "on line {line}"),
+            Self::Number(number) => write!(f, "number {number}"),
+        }
+    }
 }
 
 /// Why a text is not a valid surface.
@@ -53,6 +75,8 @@ pub fn read(text: &str) -> Result<Surface, ObjError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let is_vertex = |line: &str| line.split_whitespace().next() == Some("v");
     let vertices = lines(text).filter(|(_, line)| is_vertex(line)).count();
+    let is_texture = |line: &str| line.split_whitespace().next() == Some("vt");
+    let textures = lines(text).filter(|(_, line)| is_texture(line)).count();
     let (mut groups, mut object) = (Vec::new(), Vec::new());
     for (line, content) in lines(text) {
         let mut words = content.split_whitespace();
@@ -65,6 +89,7 @@ pub fn read(text: &str) -> Result<Surface, ObjError> {
             }
             "f" => {
                 let so_far = surface.vertices.len();
+                let texture = texture_of(words.clone(), textures, surface.texture.len());
                 let corners = face(words, vertices, so_far).map_err(|problem| ObjError {
                     line,
                     problem,
@@ -74,17 +99,24 @@ pub fn read(text: &str) -> Result<Surface, ObjError> {
                 if surface.names.last() != Some(&names) {
                     surface.names.push(names);
                 }
-                surface.faces.push(Face { corners, names: surface.names.len() - 1, line });
+                let (names, place) = (surface.names.len() - 1, Place::Line(line));
+                surface.faces.push(Face { corners, names, texture, place });
             }
             "g" => groups = words.map(str::to_owned).collect(),
             // An object name may contain spaces.
             "o" => object = vec![words.collect::<Vec<_>>().join(" ")],
+            "vt" => {
+                let numbers = words.take(2).map(str::parse);
+                let numbers: Result<Vec<f64>, _> = numbers.collect();
+                // A file whose texture is not asked for may have any.
+                let [u, v] = numbers.ok().and_then(|n| n.try_into().ok()).unwrap_or([f64::NAN; 2]);
+                surface.texture.push([u, v]);
+            }
             // OBJ keywords that do not define the surface.
-            "vt" | "vn" | "vp" | "s" | "mg" | "usemtl" | "mtllib" | "usemap" | "maplib" | "l"
-            | "p" | "bevel" | "c_interp" | "d_interp" | "lod" | "shadow_obj" | "trace_obj"
-            | "ctech" | "stech" | "cstype" | "deg" | "bmat" | "step" | "curv" | "curv2"
-            | "surf" | "parm" | "trim" | "hole" | "scrv" | "sp" | "end" | "con" | "call"
-            | "csh" | "vc" => {}
+            "vn" | "vp" | "s" | "mg" | "usemtl" | "mtllib" | "usemap" | "maplib" | "l" | "p"
+            | "bevel" | "c_interp" | "d_interp" | "lod" | "shadow_obj" | "trace_obj" | "ctech"
+            | "stech" | "cstype" | "deg" | "bmat" | "step" | "curv" | "curv2" | "surf" | "parm"
+            | "trim" | "hole" | "scrv" | "sp" | "end" | "con" | "call" | "csh" | "vc" => {}
             other => {
                 let shown: String = other.chars().take(20).collect();
                 return Err(ObjError {
@@ -100,7 +132,9 @@ pub fn read(text: &str) -> Result<Surface, ObjError> {
 
 /// Lines with their numbers, without comments; a line and its continuations after `\` are one.
 fn lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
-    let mut rest = (1..).zip(text.lines());
+    // A file with line ends of CR alone has no other.
+    let end = if text.contains('\n') { '\n' } else { '\r' };
+    let mut rest = (1..).zip(text.split(end));
     std::iter::from_fn(move || {
         let (number, first) = rest.next()?;
         let mut line = Cow::Borrowed(without_comment(first));
@@ -129,6 +163,23 @@ fn vertex<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<Vector3<f64>, 
 
 fn shortened(word: &str) -> String {
     word.chars().take(20).collect()
+}
+
+/// The texture coordinates of a face, of which there are `textures` in all and `so_far` above this line; none unless each
+/// corner names one.
+fn texture_of<'a>(
+    words: impl Iterator<Item = &'a str>,
+    textures: usize,
+    so_far: usize,
+) -> Vec<u32> {
+    let index = |word: &str| {
+        let number = word.split('/').nth(1)?.parse::<i64>().ok()?;
+        let magnitude = usize::try_from(number.unsigned_abs()).ok()?;
+        let index =
+            if number > 0 { magnitude.checked_sub(1) } else { so_far.checked_sub(magnitude) };
+        u32::try_from(index.filter(|index| *index < textures)?).ok()
+    };
+    words.map(index).collect::<Option<_>>().unwrap_or_default()
 }
 
 /// Corners of a face. `vertices` is the number of vertices in all, `so_far` that above this line.
@@ -179,7 +230,7 @@ mod tests {
         assert_eq!(surface.vertices[2], Vector3::new(1.0, 1.0, -0.5));
         let corners: Vec<&[u32]> = surface.faces.iter().map(|face| &face.corners[..]).collect();
         assert_eq!(corners, [&[0, 1, 2][..], &[0, 2, 3], &[0, 1, 2, 3]]);
-        assert_eq!(surface.faces[0].line, 13);
+        assert_eq!(surface.faces[0].place, Place::Line(13));
         let names = |face: usize| surface.names[surface.faces[face].names].clone();
         assert_eq!(names(0), ["Bag one"]);
         assert_eq!(names(2), ["lid", "top", "Bag one"]);

@@ -7,12 +7,13 @@ use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign, FoldError,
 use billow_solver::geometry::mesh::{Mesh, Shape};
 use billow_solver::geometry::mesh_io::{fold as fold_text, obj};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use serde_json::json;
 
 use super::options::{OutputOptions, QuietOption};
 use super::{Format, output_error};
 use crate::input::json::Json;
 use crate::input::keys::{self, CAPS, CHIRALITIES, FITS, Named};
-use crate::input::value::Value;
+use crate::input::value::{Value, short_number};
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files::{Disk, Files, disk_error, write_output};
 use crate::platform::memory;
@@ -63,13 +64,17 @@ pub struct Args {
     /// Shape of the caps; circular caps exist for the erected shape only.
     #[arg(long, value_parser = one_of(&CAPS), default_value = "polygon")]
     caps: Caps,
-    /// Write `crease_pattern.fold`, `crease_pattern.svg`, `flat.obj`, `stowed.obj`,
-    /// `developed.obj` and `erected.obj` to this folder.
+    /// Write `crease_pattern.fold`, `crease_pattern.svg`, and meshes with the same faces to this folder: `flat.obj`,
+    /// `stowed.obj`, `erected.obj`, and `developed.obj`, the reference of the others. `billow solve` runs the
+    /// `scene.json` beside them.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Draw glue flaps of this width in the .svg.
     #[arg(long, value_name = "WIDTH", requires = "out", allow_hyphen_values = true)]
     glue_flaps: Option<String>,
+    /// Draw the .svg with a colour on each line as Origami Simulator reads it, and without texts.
+    #[arg(long, requires = "out", conflicts_with = "glue_flaps")]
+    origami_simulator: bool,
     #[command(flatten)]
     output: OutputOptions,
     #[command(flatten)]
@@ -114,7 +119,14 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         }
     }
     match (&args.out, answer) {
-        (Some(folder), Ok(pattern)) => write_files(&Disk, folder, &pattern, flap, args.quiet.quiet),
+        (Some(folder), Ok(pattern)) => {
+            let drawing = if args.origami_simulator {
+                crease_pattern::for_origami_simulator(&pattern)
+            } else {
+                crease_pattern::svg(&pattern, flap)
+            };
+            write_files(&Disk, folder, &pattern, drawing, args.quiet.quiet)
+        }
         (Some(folder), Err(_)) => {
             eprintln!("billow: infeasible design, nothing is written to {}", folder.display());
             Ok(())
@@ -236,19 +248,37 @@ fn check_size(design: &FoldDesign) -> Result<()> {
     Err(refused("--subdivisions", &design.subdivisions.to_string(), &problem, &allowed))
 }
 
+/// A scene that inflates the stowed shape, held by its bottom ring, for `billow solve`.
+fn scene(stowed_height: f64) -> String {
+    let held: f64 = short_number(HELD * stowed_height).parse().unwrap_or_default();
+    let json = json!({
+        "mesh": {"positions": "stowed.obj", "reference": "developed.obj"},
+        "gas": {"windows": [{"mass_flow_rate": "5 g/s"}]},
+        "supports": [{"on": "box", "max": [null, null, held], "fix": "xyz"}],
+        "solver": {"end_time": "0.3 s"},
+        "outputs": {"frames": 20},
+    });
+    format!("{json:#}\n")
+}
+
+/// Height over that of the stack up to which nodes are held. Chosen: far below a layer, far above rounding.
+const HELD: f64 = 1e-4;
+
 fn write_files(
     files: &dyn Files,
     folder: &Path,
     pattern: &FoldPattern,
-    flap: Option<f64>,
+    drawing: String,
     quiet: bool,
 ) -> Result<()> {
     let design = &pattern.design;
     let title = format!("billow: N {} panels, M {} storeys", design.panels, design.storeys);
+    let mesh = |shape| {
+        Mesh::new(pattern, design.subdivisions, shape)
+            .map_err(|error| refused("--caps", "circular", &error.to_string(), "polygon"))
+    };
     let shape = |shape, name: &str| -> Result<String> {
-        let mesh = Mesh::new(pattern, design.subdivisions, shape)
-            .map_err(|error| refused("--caps", "circular", &error.to_string(), "polygon"))?;
-        Ok(obj::mesh(&mesh, &format!("{title}, {name}")))
+        Ok(obj::mesh(&mesh(shape)?, &format!("{title}, {name}")))
     };
     let mut texts = vec![("erected.obj", shape(Shape::Erected, "erected")?)];
     if design.caps == Caps::Circular {
@@ -256,10 +286,14 @@ fn write_files(
     } else {
         texts.extend([
             ("crease_pattern.fold", fold_text::crease_pattern(pattern, &title)),
-            ("crease_pattern.svg", crease_pattern::svg(pattern, flap)),
+            ("crease_pattern.svg", drawing),
             ("flat.obj", shape(Shape::Flat, "flat folded")?),
             ("stowed.obj", shape(Shape::Stowed(design.stowed_height), "stowed")?),
-            ("developed.obj", obj::developed(pattern, &format!("{title}, developed"))),
+            (
+                "developed.obj",
+                obj::developed(pattern, &mesh(Shape::Flat)?, &format!("{title}, developed")),
+            ),
+            ("scene.json", scene(design.stowed_height)),
         ]);
     }
     files.create_folder(folder).map_err(|error| disk_error(folder, &error))?;

@@ -135,6 +135,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         colour,
         smooth: args.smooth,
         values: &values,
+        marks: &[],
         notes: &notes,
     }
     .svg();

@@ -44,10 +44,12 @@ pub static SCENE_WINDOW_KEYS: &[Key] = &[
 #[rustfmt::skip]
 pub static MESH_KEYS: &[Key] = &[
     key("positions", KeyKind::Text, Required, "\"bag.obj\"",
-        "OBJ file of the film at the start, relative to the scene file: v and f lines, faces \
-         counter-clockwise seen from outside; polygons are cut into triangles."),
+        "File of the film at the start, relative to the scene file: OBJ, STL, PLY, Gmsh (.msh) or FOLD, by its ending; \
+         faces counter-clockwise seen from outside; polygons are cut into triangles."),
     key("scale", above(Dimension::Number, 0.0, 1e9), Number(1.0), "0.001",
-        "Length of one unit of the OBJ files, m."),
+        "Length of one unit of the mesh files, m."),
+    key("texture_unit", likely(above(Dimension::Length, 0.0, 1e6), 1e-4, 1e3), Absent("texture coordinates are ignored"), "\"1 m\"",
+        "Length of one unit of the texture coordinates (vt) of an OBJ file, which then are the stress-free shape."),
     key("weld", likely(from(Dimension::Length, 0.0, 1.0), 0.0, 0.1), Absent("nothing is welded"), "\"1 um\"",
         "Vertices of positions within this distance become one node; 0 joins vertices that coincide."),
 ];
@@ -151,7 +153,7 @@ pub(crate) static NEAR: Key = key("near", POSITION, Required, "[0, 0, 0.5]", "A 
 pub(crate) const OBJECT_MEANINGS: &[(&str, &str)] = &[
     (
         "mesh.reference",
-        "Stress-free shape of the film: an OBJ file with the faces of positions in the same order \
+        "Stress-free shape of the film: a file with the faces of positions in the same order \
          (of the film, or all; it has vertices of its own, so pieces may be cut apart). Default: \
          the shape at the start.",
     ),
@@ -160,6 +162,12 @@ pub(crate) const OBJECT_MEANINGS: &[(&str, &str)] = &[
         "Faces that close the volume without being film: names of groups or objects of positions. \
          A vertex of no film moves with the rim of its faces, which takes its load. Default: none; \
          with gas, a fan over each free edge loop closes an open film.",
+    ),
+    (
+        "gas.windows[].table",
+        "Mass flow rate over time, in place of to and mass_flow_rate: points, as in [[\"0 s\", \"0 g/s\"], [\"0.2 s\", \
+         \"5 g/s\"]], linear between them, times counted from `from`; or the name of a CSV file with columns of \
+         both (SI, or units in parentheses in its first line).",
     ),
     ("supports[].nodes", "Vertices by number, 0 for the first of the file."),
     ("supports[].body", "A rigid plane of this mass that moves along its normal as a free body."),

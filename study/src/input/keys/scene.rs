@@ -24,7 +24,7 @@ pub(super) const SCENE_SECTIONS: &[(&str, &str)] = &[
 
 /// Keys of a scene that hold more than one value, beside the sections, and their meanings.
 pub(crate) const SCENE_STRUCTURED: &[(&str, &str)] = &[
-    ("mesh", "Film of any shape, from OBJ files: this, or design."),
+    ("mesh", "Film of any shape, from files: this, or design."),
     ("gas.windows", "Inflow windows; overlapping ones add up. Default: none."),
     (
         "contact.plates",
@@ -70,6 +70,9 @@ pub(super) static SCENE_KEYS: &[Key] = &[
 
     key("contact.enabled", KeyKind::Flag, Absent("true; false where solver.static is true"), "true",
         "Whether contact keeps film from passing through film; without it, passages are not counted."),
+    key("contact.ignore_start", KeyKind::Flag, Absent("false"), "true",
+        "Whether pairs of faces that touch or pass through each other at the start have no contact, and are not counted; \
+         without it they are an error."),
     key("contact.adhesion_range", likely(above(Dimension::Length, 0.0, 0.1), 1e-6, 0.02),
         Absent("contact.distance"), "\"1 mm\"",
         "Range of adhesion beyond the contact distance."),

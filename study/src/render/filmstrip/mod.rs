@@ -12,7 +12,7 @@ use self::layout::Layout;
 use super::figure::legend::{Legend, Sample};
 use super::figure::map::{Cell, Ground};
 use super::figure::{style, ticks};
-use super::page::{self, Anchor, Letters, Page, Position};
+use super::page::{self, Anchor, Letters, Page, Position, Stroke};
 use super::projection::{Facet, View};
 
 mod layout;
@@ -48,6 +48,10 @@ const REGIMES: [(Regime, &str, &str); 3] = [
     (Regime::Wrinkled, "wrinkled", "#3d9fb5"),
     (Regime::Slack, "slack", "#3f1f63"),
 ];
+/// Lines of the cross of a mark.
+const MARK: Stroke = Stroke::solid("#d55e00", 0.6);
+/// Size of the cross of a mark, mm.
+const MARK_SIZE: f64 = 2.2;
 /// Size of the colour bar of a quantity, mm.
 const BAR: [f64; 2] = [70.0, 3.2];
 
@@ -94,6 +98,8 @@ pub struct Filmstrip<'a> {
     pub smooth: bool,
     /// Texts below each shape, one list of lines per frame: its time and sampled values.
     pub values: &'a [Vec<String>],
+    /// Places that crosses with their numbers, from 1, mark on every shape.
+    pub marks: &'a [[f32; 3]],
     /// Lines of text at the end of the picture.
     pub notes: &'a [String],
 }
@@ -201,6 +207,12 @@ impl Filmstrip<'_> {
             page.path(&fill, Some(&fill), &d);
         }
         page.close();
+        for (mark, place) in self.marks.iter().enumerate() {
+            let [x, y] = layout.page(number, self.view.project(*place));
+            style::cross(page, [x, y], &MARK, MARK_SIZE);
+            let letters = Letters { colour: MARK.colour, ..Letters::new(LETTER) };
+            page.text([x + MARK_SIZE, y - 0.5 * LETTER], &letters, &(mark + 1).to_string());
+        }
     }
 
     #[expect(

@@ -44,6 +44,7 @@ fn strip<'a>(film: &'a (Vec<[u32; 3]>, Vec<u32>), frames: &'a [Frame]) -> Filmst
         colour: Colour::Storey,
         smooth: false,
         values: &[],
+        marks: &[],
         notes: &[],
     }
 }

@@ -3,7 +3,7 @@
 use billow_solver::geometry::fold::{Caps, FoldDesign, FoldError, FoldPattern};
 use billow_solver::geometry::mesh::{Mesh, Part, Shape as State};
 use billow_solver::geometry::mesh_io::obj;
-use billow_solver::geometry::mesh_io::obj_reader::{Face, Surface};
+use billow_solver::geometry::mesh_io::obj_reader::{Face, Place, Surface};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::models::film::Rings;
 use billow_solver::models::film::capsule::{imperfect, part_nodes};
@@ -122,7 +122,8 @@ fn numbering(mesh: Mesh) -> Numbering {
             surface.names.push(vec![name]);
         }
         let names = surface.names.len() - 1;
-        surface.faces.push(Face { corners: triangle.to_vec(), names, line: 0 });
+        let place = Place::Number(surface.faces.len() + 1);
+        surface.faces.push(Face { corners: triangle.to_vec(), names, texture: Vec::new(), place });
     }
     Numbering {
         surface,

@@ -11,7 +11,8 @@ use nalgebra::Vector3;
 
 use super::shape::Shape;
 use crate::input::json::Json;
-use crate::input::source::{Source, shown};
+use crate::input::source::Source;
+use crate::input::value::brief_number;
 use crate::platform::error::InputError;
 
 /// Pieces of which the nesting is looked at, at most: each is compared with each.
@@ -68,11 +69,11 @@ pub(super) fn check(
         let vertex = shape.numbering.obj_vertex(first);
         let position: [f64; 3] = (at(first) + shape.numbering.origin).into();
         let place = format!(
-            "piece {} of {} (with OBJ vertex {vertex}, counted from 1, at {position:?} m)",
+            "piece {} of {} (with vertex {vertex}, counted from 1, at {position:?} m)",
             index + 1,
             pieces.len()
         );
-        let volume = shown(piece.volume);
+        let volume = brief_number(piece.volume);
         if is_cavity && piece.volume > 0.0 {
             notes.push(format!(
                 "{place} lies inside another one and is wound as that is: its {volume} m³ count twice; reverse its \

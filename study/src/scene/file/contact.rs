@@ -1,11 +1,17 @@
 //! `contact`: contact of film with film and with plates.
 
+use std::collections::BTreeSet;
+
+use billow_solver::collision::contact::{ContactModel, PairKind};
+use billow_solver::collision::monitor::intersections::intersections;
 use billow_solver::geometry::field::Field;
+use billow_solver::geometry::topology::Topology;
 use billow_solver::models::film::capsule;
 use billow_solver::scene::error::SceneError;
 use billow_solver::scene::film_scene::{FilmContact, FilmScene};
 use billow_solver::scene::plate::Plate;
 
+use super::shape::Numbering;
 use super::{is_static, motion};
 use crate::input::json::Json;
 use crate::input::keys::PLATE_KEYS;
@@ -77,15 +83,122 @@ pub(super) fn check_plates(film: &FilmScene, source: &Source) -> Result<(), Inpu
 /// rounding). Such film has no side, and contact cannot push it apart.
 const TOUCHING_DISTANCE: f64 = 1e-7;
 
-/// Whether the film touches itself at the start: contact cannot distinguish its sides then.
-pub(super) fn touches_itself(film: &FilmScene) -> Result<bool, SceneError> {
-    let (system, ..) = capsule::constants(film)?;
-    let Some(model) = &system.contact else { return Ok(false) };
-    let mut touches = false;
-    let positions = Field::of(&film.shell.positions);
-    model.pairs_within(&positions, TOUCHING_DISTANCE * model.edge_length, |_, _| touches = true);
-    Ok(touches)
+/// Pairs of elements of film that starts in film.
+struct StartPairs {
+    /// All of them, in order.
+    all: Vec<[u32; 2]>,
+    /// Those of which an edge passes through the other element.
+    crossing: Vec<[u32; 2]>,
 }
+
+impl StartPairs {
+    /// Those of a film whose contact has this model.
+    fn of(model: &ContactModel, positions: &Field) -> Self {
+        let topology = &model.mesh.topology;
+        let mut at_node = vec![Vec::new(); topology.nodes()];
+        let mut at_edge = vec![Vec::new(); topology.edges.len()];
+        for (element, (nodes, edges)) in
+            (0_u32..).zip(topology.triangles.iter().zip(&topology.element_edges))
+        {
+            for node in nodes {
+                at_node[*node as usize].push(element);
+            }
+            for edge in edges {
+                at_edge[*edge as usize].push(element);
+            }
+        }
+        let mut all: BTreeSet<[u32; 2]> = BTreeSet::new();
+        let mut crossing = BTreeSet::new();
+        let add = |pairs: &mut BTreeSet<[u32; 2]>, some: &[u32], others: &[u32]| {
+            let both = some.iter().flat_map(|a| others.iter().map(move |b| [*a.min(b), *a.max(b)]));
+            pairs.extend(both.filter(|[a, b]| a != b));
+        };
+        model.pairs_within(positions, TOUCHING_DISTANCE * model.edge_length, |pair, _| {
+            let (first, second) = (pair.first as usize, pair.second as usize);
+            match pair.kind {
+                PairKind::NodeElement => add(&mut all, &at_node[first], &[pair.second]),
+                PairKind::EdgeEdge => add(&mut all, &at_edge[first], &at_edge[second]),
+            }
+        });
+        for (edge, element) in intersections(topology, positions) {
+            add(&mut crossing, &at_edge[edge as usize], &[element]);
+        }
+        all.extend(&crossing);
+        Self { all: all.into_iter().collect(), crossing: crossing.into_iter().collect() }
+    }
+}
+
+/// Film that starts in film: it has no side there. Its pairs of faces lose their contact where the scene says so
+/// (`contact.ignore_start`), or where they touch and the scene asks for no contact; else they are refused.
+pub(super) fn settle_start(
+    film: &mut FilmScene,
+    (tree, settings): (&Json, &Settings),
+    numbering: &Numbering,
+    notes: &mut Vec<String>,
+    source: &Source,
+) -> Result<(), InputError> {
+    let refused = |error: SceneError| super::scene_error(error, source);
+    let (system, ..) = capsule::constants(film).map_err(refused)?;
+    let Some(model) = &system.contact else { return Ok(()) };
+    let found = StartPairs::of(model, &Field::of(&film.shell.positions));
+    if found.all.is_empty() {
+        return Ok(());
+    }
+    let (does, shown) = match found.crossing.as_slice() {
+        [] => ("touches", &found.all),
+        _ => ("passes through", &found.crossing),
+    };
+    let problem = format!("film {does} film at the start{}", places(shown, numbering));
+    let given = tree.get("contact").filter(|json| **json != Json::Null);
+    let ignore = settings.flag("contact.ignore_start") == Some(true);
+    if !ignore && (given.is_some() || !found.crossing.is_empty()) {
+        let allowed = "a gap between layers, however small; contact.ignore_start true for no contact of these pairs; or \
+                       contact.enabled false";
+        return Err(source.error("contact", "", problem, allowed));
+    }
+    notes.push(format!("{problem}: these pairs have no contact, all others have"));
+    if let Some(contact) = &mut film.contact {
+        contact.ignored = found.all;
+    }
+    Ok(())
+}
+
+/// Notes that film passes through film where it starts, for a static equilibrium, which has no contact.
+pub(super) fn crossing_film(film: &FilmScene, numbering: &Numbering) -> Option<String> {
+    let shell = &film.shell;
+    let topology = Topology::new(shell.positions.len(), &shell.triangles);
+    let found = intersections(&topology, &Field::of(&shell.positions));
+    let with_edge = |edge: u32| (0..).zip(&topology.element_edges).find(|(_, e)| e.contains(&edge));
+    let pairs = found.iter().filter_map(|(edge, element)| Some([with_edge(*edge)?.0, *element]));
+    let pairs: Vec<[u32; 2]> = pairs.take(MAX_SEARCHED).collect();
+    (!pairs.is_empty()).then(|| {
+        format!(
+            "film passes through film at the start{}: statics has no contact",
+            places(&pairs, numbering)
+        )
+    })
+}
+
+/// Pairs of faces whose places are looked for. Chosen: a message names fewer.
+const MAX_SEARCHED: usize = 100;
+
+/// Some pairs of elements as pairs of faces: their number and the places of the first.
+fn places(pairs: &[[u32; 2]], numbering: &Numbering) -> String {
+    let place = |element: u32| numbering.place(element as usize);
+    // The triangles of one face have one place.
+    let pairs: BTreeSet<[String; 2]> = pairs.iter().map(|pair| pair.map(place)).collect();
+    let number = match pairs.len() {
+        1 => "in a pair of faces".to_owned(),
+        number => format!("in {number} pairs of faces"),
+    };
+    let shown: Vec<String> =
+        pairs.iter().take(MAX_SHOWN).map(|[a, b]| format!("{a} and {b}")).collect();
+    let more = if pairs.len() > MAX_SHOWN { "; …" } else { "" };
+    format!(", {number}: {}{more}", shown.join("; "))
+}
+
+/// Most pairs of faces that a message names.
+const MAX_SHOWN: usize = 2;
 
 fn plates(
     json: Option<&Json>,

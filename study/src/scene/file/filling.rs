@@ -7,8 +7,9 @@ use billow_solver::scene::film_support::FilmSupport;
 use billow_solver::scene::{GasSupply, HeatTransfer, InflowWindow};
 
 use super::components::ZERO_VOLUME;
+use super::reader::Reader;
 use super::shape::Shape;
-use super::{components, is_static, seams};
+use super::{Checked, components, flow_table, is_static, seams};
 use crate::input::json::Json;
 use crate::input::keys::SCENE_WINDOW_KEYS;
 use crate::input::object::Object;
@@ -16,7 +17,9 @@ use crate::input::object::list;
 use crate::input::sections::check_window;
 use crate::input::settings::Settings;
 use crate::input::source::{Source, shown};
-use crate::platform::error::InputError;
+use crate::input::value::brief_number;
+use crate::job::surroundings::Surroundings;
+use crate::platform::error::Result;
 
 /// Reads `gas`. With gas, fans close an open film.
 pub(super) fn read(
@@ -25,20 +28,30 @@ pub(super) fn read(
     shape: &mut Shape,
     supports: &[FilmSupport],
     notes: &mut Vec<String>,
-    source: &Source,
-) -> Result<Filling, InputError> {
+    reader: &mut Reader,
+) -> Result<Filling> {
+    let source = &reader.source.clone();
     let gas = tree.get("gas");
     let Some(gas) = gas.filter(|gas| gas.get("pressure").is_none()) else {
         let pressure = settings.number("gas.pressure").unwrap_or(0.0);
         if let Some(Json::Object(members)) = gas
             && let Some((other, value)) = members.iter().find(|(name, _)| name != "pressure")
         {
-            return Err(source.error(
-                &format!("gas.{other}"),
-                value,
-                "is given beside a fixed pressure, which does not depend on the gas",
-                "pressure alone, or a gas without it",
-            ));
+            return Err(source
+                .error(
+                    &format!("gas.{other}"),
+                    value,
+                    "is given beside a fixed pressure, which does not depend on the gas",
+                    "pressure alone, or a gas without it",
+                )
+                .into());
+        }
+        if pressure != 0.0 && supports.is_empty() && !shape.shell.is_closed() {
+            notes.push(
+                "the film is open and nothing holds it: the pressure has a resultant, which accelerates it; supports \
+                 hold it"
+                    .to_owned(),
+            );
         }
         if pressure != 0.0 {
             seams::check(shape, source)?;
@@ -51,31 +64,30 @@ pub(super) fn read(
         return Ok(Filling::Pressure(pressure));
     };
     if is_static(settings) {
-        return Err(source.error(
-            "gas",
-            gas,
-            "is not a fixed pressure, which solver.static needs",
-            "{\"pressure\": \"1 kPa\"}",
-        ));
+        return Err(source
+            .error(
+                "gas",
+                gas,
+                "is not a fixed pressure, which solver.static needs",
+                "{\"pressure\": \"1 kPa\"}",
+            )
+            .into());
     }
     seams::check(shape, source)?;
     components::check(shape, notes, source)?;
     close(shape, supports, notes);
     let volume = check_outward(shape, source)?;
-    let windows = windows(gas.get("windows"), settings, source)?;
+    let windows = windows(gas.get("windows"), settings, reader)?;
     let mut supply = settings.gas(0.0, windows, source)?;
     let initial_temperature = initial_temperature(&supply, settings, source)?;
     supply.initial_mass = initial_mass(&supply, settings, volume, initial_temperature, source)?;
     notes.extend(below_ambient(&supply, volume, initial_temperature));
+    notes.extend(air_outside(tree, settings, shape, &supply, source)?);
     Ok(Filling::Gas { supply, initial_temperature })
 }
 
 /// Temperature of the gas at the start, K.
-fn initial_temperature(
-    supply: &GasSupply,
-    settings: &Settings,
-    source: &Source,
-) -> Result<f64, InputError> {
+fn initial_temperature(supply: &GasSupply, settings: &Settings, source: &Source) -> Checked<f64> {
     let film_temperature = settings.needed("film.temperature", source)?;
     let initial_temperature =
         settings.number("gas.initial_temperature").unwrap_or(film_temperature);
@@ -98,7 +110,7 @@ fn initial_mass(
     volume: f64,
     initial_temperature: f64,
     source: &Source,
-) -> Result<f64, InputError> {
+) -> Checked<f64> {
     match (settings.number("gas.initial_mass"), settings.number("gas.initial_pressure")) {
         (Some(_), Some(pressure)) => Err(source.error(
             "gas.initial_pressure",
@@ -131,20 +143,57 @@ fn below_ambient(supply: &GasSupply, volume: f64, temperature: f64) -> Option<St
     })
 }
 
+/// Notes on what the air around the film does that no model has, with the volume of a sphere of its area, which is the
+/// largest; refuses what needs it.
+fn air_outside(
+    tree: &Json,
+    settings: &Settings,
+    shape: &Shape,
+    supply: &GasSupply,
+    source: &Source,
+) -> Checked<Vec<String>> {
+    let area = shape.shell.reference_area();
+    let volume = area * libm::sqrt(area) / (6.0 * libm::sqrt(core::f64::consts::PI));
+    let given = tree.get("gravity");
+    let gravity = super::gravity(given, source)?.norm();
+    let film = settings.film(source)?;
+    let outside = Surroundings::new(&film, supply, [area, volume], gravity > 0.0);
+    match outside.refusal() {
+        Some(problem) => {
+            let value = given.map(Json::to_string).unwrap_or_default();
+            Err(source.error("gravity", value, problem, Surroundings::ALLOWED))
+        }
+        None => Ok(outside.notes()),
+    }
+}
+
 /// The inflow windows of the file.
 fn windows(
     json: Option<&Json>,
     settings: &Settings,
-    source: &Source,
-) -> Result<Vec<InflowWindow>, InputError> {
+    reader: &mut Reader,
+) -> Result<Vec<InflowWindow>> {
     let Some(json) = json else { return Ok(Vec::new()) };
+    let source = &reader.source.clone();
     let end_time = settings.needed("solver.end_time", source)?;
     let allowed = "a list of {\"from\": 0, \"to\": \"0.3 s\", \"mass_flow_rate\": \"5 g/s\"}";
     let mut windows = Vec::new();
     for (index, json) in list(json, "gas.windows", source, allowed)?.iter().enumerate() {
         let path = format!("gas.windows[{index}]");
-        let window = Object::new(json, &path, "an inflow window", SCENE_WINDOW_KEYS, &[], source)?;
+        let window =
+            Object::new(json, &path, "an inflow window", SCENE_WINDOW_KEYS, &["table"], source)?;
         let from = window.needed("from")?;
+        if let Some(table) = window.given("table") {
+            let beside =
+                ["to", "mass_flow_rate"].into_iter().find(|key| window.given(key).is_some());
+            if let Some(key) = beside {
+                let problem = "is given beside table, which has all times and rates";
+                return Err(window.error(key, problem, "a table, or one rate").into());
+            }
+            let start = [from, window.needed("temperature")?];
+            windows.extend(flow_table::windows(table, &format!("{path}.table"), start, reader)?);
+            continue;
+        }
         let to = window.number("to")?;
         let to = to.unwrap_or(end_time.max(from));
         let end = window.given("to").map(|_| ("to", format!("{} s", shown(to))));
@@ -164,18 +213,20 @@ fn encloses_nothing(shape: &Shape) -> bool {
 }
 
 /// The enclosed volume, m³.
-fn check_outward(shape: &Shape, source: &Source) -> Result<f64, InputError> {
+fn check_outward(shape: &Shape, source: &Source) -> Checked<f64> {
     let positions = &shape.shell.positions;
     let volume = shape.shell.volume(|node| positions[node as usize]);
     if encloses_nothing(shape) {
-        return Err(source
-            .error(
-                "mesh.positions",
-                Json::Text(shape.file.clone()),
-                "encloses no volume: its layers touch each other",
-                "film that encloses a volume where there is gas",
-            )
-            .with_hint("separate the layers a little, or give gas.pressure"));
+        let is_open = !shape.shell.walls.is_empty() || !shape.shell.is_closed();
+        let (problem, hint) = if is_open {
+            ("is open and encloses no volume", "close the film, or give gas.pressure")
+        } else {
+            let hint = "separate the layers a little, or give gas.pressure";
+            ("encloses no volume: its layers touch each other", hint)
+        };
+        let allowed = "film that encloses a volume where there is gas";
+        let file = Json::Text(shape.file.clone());
+        return Err(source.error("mesh.positions", file, problem, allowed).with_hint(hint));
     }
     if volume > 0.0 {
         return Ok(volume);
@@ -184,7 +235,7 @@ fn check_outward(shape: &Shape, source: &Source) -> Result<f64, InputError> {
         .error(
             "mesh.positions",
             Json::Text(shape.file.clone()),
-            format!("encloses {} m³: its faces are wound inward", shown(volume)),
+            format!("encloses {} m³: its faces are wound inward", brief_number(volume)),
             "faces counter-clockwise seen from outside",
         )
         .with_hint(
@@ -203,13 +254,13 @@ fn close(shape: &mut Shape, supports: &[FilmSupport], notes: &mut Vec<String>) {
     let tips = shape.shell.close(|node| supports.projector(node as usize));
     let walls = shape.shell.walls.len();
     notes.push(format!(
-        "the film is open: {} fan(s) over {edges} free edges close its volume",
-        tips.len()
+        "the film is open: {} over {edges} free edges close its volume",
+        if tips.len() == 1 { "a fan".to_owned() } else { format!("{} fans", tips.len()) }
     ));
     if walls > 0 {
         notes.push(format!(
-            "supports hold the edges of {walls} fan(s), which count as walls or symmetry planes: reactions \
-             leave out the pressure on them"
+            "supports hold the edges of fans ({walls}), which count as walls or symmetry planes: reactions leave out \
+             the pressure on them"
         ));
     }
 }

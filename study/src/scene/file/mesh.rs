@@ -1,4 +1,4 @@
-//! `mesh`: film from OBJ files of any program. Vertices without a face are dropped, vertices that
+//! `mesh`: film from files of any program. Vertices without a face are dropped, vertices that
 //! coincide are joined only with `weld`; the user's numbers are kept.
 
 use billow_solver::geometry::field::Field;
@@ -20,24 +20,40 @@ use crate::input::object::Object;
 use crate::input::source::Source;
 use crate::platform::error::{InputError, Result};
 
-/// Reads `mesh`.
-pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
-    let source = reader.source.clone();
-    let object =
-        Object::new(json, "mesh", "a mesh", MESH_KEYS, &["reference", "closure"], &source)?;
+fn object<'a>(json: &'a Json, source: &'a Source) -> Result<Object<'a>> {
+    Ok(Object::new(json, "mesh", "a mesh", MESH_KEYS, &["reference", "closure"], source)?)
+}
+
+/// The surface at the start as its file has it, in m, and the name of the file.
+fn surface_of(object: &Object<'_>, reader: &mut Reader) -> Result<(Surface, String)> {
     let file = object.needed_text("positions")?;
     let scale = object.needed("scale")?;
     let mut surface = reader.surface("mesh.positions", &file)?;
     for vertex in &mut surface.vertices {
         *vertex *= scale;
     }
+    Ok((surface, file))
+}
+
+/// The surface of `mesh` at the start as its file has it, in m.
+pub(super) fn surface(json: &Json, reader: &mut Reader) -> Result<Surface> {
+    let source = reader.source.clone();
+    Ok(surface_of(&object(json, &source)?, reader)?.0)
+}
+
+/// Reads `mesh`.
+pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
+    let source = reader.source.clone();
+    let object = object(json, &source)?;
+    let (mut surface, file) = surface_of(&object, reader)?;
+    let scale = object.needed("scale")?;
     let origin = origin(&surface.vertices);
     for vertex in &mut surface.vertices {
         *vertex -= origin;
     }
     if surface.faces.is_empty() {
         let problem = "has no faces";
-        return Err(object.error("positions", problem, "an OBJ file with f lines").into());
+        return Err(object.error("positions", problem, super::formats::FORMATS).into());
     }
     let tolerance = object.number("weld")?;
     let joined = weld::joined(&surface.vertices, tolerance);
@@ -111,8 +127,8 @@ fn triangles(
     let of_face = |(face, corners): (&Face, &Vec<Vector3<f64>>)| {
         cut::triangles(corners).ok_or_else(|| {
             let problem = format!(
-                "the face on line {} has no area, or crosses itself, and cannot be cut into triangles",
-                face.line
+                "the face {} has no area, or crosses itself, and cannot be cut into triangles",
+                face.place
             );
             let allowed = "faces that do not cross themselves, in one plane or near it";
             object.error(flat_key(object), problem, allowed).into()
@@ -186,7 +202,7 @@ pub(super) fn check_closure(
     };
     let vertex = numbering.obj_vertex(error.node);
     let problem = format!(
-        "OBJ vertex {vertex} (counted from 1) of its faces belongs to no film, and the rim of the faces does not \
+        "vertex {vertex} (counted from 1) of its faces belongs to no film, and the rim of the faces does not \
          determine where it moves"
     );
     let allowed = "faces whose edge is film all round, with vertices that the edge surrounds";
@@ -201,7 +217,7 @@ fn check_triangle(file: &str, face: &Face, [a, b, c]: [u32; 3], source: &Source)
     if a != b && b != c && a != c {
         return Ok(());
     }
-    let problem = format!("line {}: welding leaves a face without area", face.line);
+    let problem = format!("welding leaves the face {} without area", face.place);
     let mut error = refuse(
         file,
         "mesh.positions",
@@ -213,6 +229,9 @@ fn check_triangle(file: &str, face: &Face, [a, b, c]: [u32; 3], source: &Source)
     Err(error.into())
 }
 
+/// Most faces that a message names.
+const MAX_SHOWN: usize = 4;
+
 /// Refuses an edge with more than two faces, or with two faces wound against each other.
 fn check_edges(shell: &Shell, numbering: &Numbering, file: &str, source: &Source) -> Result<()> {
     let Err(error) = shell.check() else { return Ok(()) };
@@ -221,13 +240,22 @@ fn check_edges(shell: &Shell, numbering: &Numbering, file: &str, source: &Source
         return Err(refuse(file, "mesh.positions", problem, "", source).into());
     };
     let [a, b] = edge.map(|node| numbering.obj_vertex(node));
+    let has = |triangle: &&[u32; 3]| edge.iter().all(|node| triangle.contains(node));
+    let faces = shell.triangles.iter().chain(&shell.closure).filter(has).count();
+    let of_film = (0..).zip(&shell.triangles).filter(|(_, triangle)| has(triangle));
+    let places: Vec<String> =
+        of_film.map(|(element, _)| numbering.place(element)).take(MAX_SHOWN).collect();
+    let (problem, hint) = if faces > 2 {
+        let hint = "delete the faces that are there twice or divide the volume inside";
+        (format!("belongs to {faces} faces, at most two can meet there"), hint)
+    } else {
+        let hint = "recalculate the normals so that all point outward; wind faces of closure as those of film";
+        ("has two faces that wind against each other".to_owned(), hint)
+    };
     let problem = format!(
-        "the edge between OBJ vertices {a} and {b} (counted from 1) belongs to more than two faces, or \
-         to two that wind against each other"
+        "the edge between vertices {a} and {b} (counted from 1) {problem}: {}",
+        places.join("; ")
     );
     let allowed = "a surface: at most two faces at each edge, all wound in one sense";
-    let mut error = refuse(file, "mesh.positions", problem, allowed, source);
-    "recalculate the normals so that all point outward; wind faces of closure as those of film"
-        .clone_into(&mut error.hint);
-    Err(error.into())
+    Err(refuse(file, "mesh.positions", problem, allowed, source).with_hint(hint).into())
 }

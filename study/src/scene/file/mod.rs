@@ -11,6 +11,8 @@ mod conflicts;
 mod contact;
 mod cut;
 mod filling;
+mod flow_table;
+mod formats;
 mod judge;
 mod memory;
 mod mesh;
@@ -25,9 +27,9 @@ mod start;
 mod supports;
 mod weld;
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
+use billow_solver::geometry::mesh_io::obj_reader::Surface;
 use billow_solver::mechanics::supports::PrescribedNodes;
 use billow_solver::models::film::Rings;
 use billow_solver::platform::simd::InstructionSet;
@@ -92,6 +94,20 @@ impl SceneFile {
         Self::from_text(study_file::text_of(&bytes, &file)?, path, sets, instruction_set)
     }
 
+    /// The surface of the mesh of a scene as its file has it, m: also of a scene that is refused for what its mesh is.
+    /// `None` for a capsule.
+    ///
+    /// # Errors
+    /// A scene or a mesh that cannot be read.
+    pub fn surface(path: &Path, sets: &[String]) -> Result<Option<Surface>> {
+        let bytes = study_file::read(path, "scene file", "scenes/sphere.json")?;
+        let file = path.display().to_string();
+        let mut tree = syntax::parse(study_file::text_of(&bytes, &file)?, &file)?;
+        let mut reader = Reader::new(path);
+        overrides::apply(&mut tree, sets, &SCENE, &mut reader.source)?;
+        tree.get("mesh").map(|json| mesh::surface(json, &mut reader)).transpose()
+    }
+
     /// Reads a scene from its text; `path` is where its file would be.
     ///
     /// # Errors
@@ -124,9 +140,7 @@ impl SceneFile {
         }
         refuse_study(&tree, &file, &source)?;
         let notes = overrides::apply(&mut tree, sets, &SCENE, &mut source)?;
-        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        let mut reader =
-            Reader { source, folder, hashes: BTreeMap::new(), needs: Needs::default() };
+        let mut reader = Reader { source, ..Reader::new(path) };
         Self::read(&tree, notes, &mut reader, instruction_set)
     }
 
@@ -160,9 +174,9 @@ impl SceneFile {
             Some(json) => mesh::read(json, reader)?,
             None => capsule::read(&settings, reader.needs, &reader.source)?,
         };
+        notes.append(&mut reader.notes);
         let supports = supports::read(tree, &settings, &shape, &reader.source)?;
-        let filling =
-            filling::read(tree, &settings, &mut shape, &supports, &mut notes, &reader.source)?;
+        let filling = filling::read(tree, &settings, &mut shape, &supports, &mut notes, reader)?;
         conflicts::check(&supports, &shape, &reader.source)?;
         let mut seating = supports::seating(&supports, &shape);
         if statics {
@@ -189,7 +203,7 @@ impl SceneFile {
             notes
                 .push("contact is off: film passes through film, and it is not counted".to_owned());
         }
-        let film = FilmScene {
+        let mut film = FilmScene {
             shell: shape.shell,
             velocities,
             film,
@@ -214,10 +228,15 @@ impl SceneFile {
         contact::check_plates(&film, &reader.source)?;
         notes.extend(without_effect(&film, &settings));
         if let Some(mesh) = tree.get("mesh") {
-            let has_reference = mesh.get("reference").is_some();
+            let is_given = |key| mesh.get(key).is_some();
+            let has_reference = is_given("reference") || is_given("texture_unit");
             notes.extend(judge::notes(&film, &shape.numbering, has_reference, &reader.source)?);
         }
-        let film = check_film(film, tree, &mut notes, &reader.source)?;
+        let (given, numbering) = ((tree, &settings), &shape.numbering);
+        contact::settle_start(&mut film, given, numbering, &mut notes, &reader.source)?;
+        if statics {
+            notes.extend(contact::crossing_film(&film, numbering));
+        }
         notes.extend(reader.source.warnings());
         let (json, fingerprint) = identity(tree, reader);
         Ok(Self {
@@ -251,7 +270,7 @@ fn check_one_shape(tree: &Json, source: &Source) -> Result<()> {
         (Some(_), Some(_)) => "gives both design and mesh",
         (None, None) => "gives neither design nor mesh",
     };
-    let allowed = "one of design (a capsule) and mesh (OBJ files)";
+    let allowed = "one of design (a capsule) and mesh (files)";
     Err(source.error("", "", problem, allowed).into())
 }
 
@@ -284,27 +303,6 @@ fn without_effect(film: &FilmScene, settings: &Settings) -> Vec<String> {
         notes.push("creases has no effect: a mesh has no fold lines".to_owned());
     }
     notes
-}
-
-/// Has the solver check the film before anything runs. Film that touches itself at the start has no
-/// contact: a file that asks for it is refused.
-fn check_film(
-    mut film: FilmScene,
-    tree: &Json,
-    notes: &mut Vec<String>,
-    source: &Source,
-) -> Result<FilmScene> {
-    let touches = contact::touches_itself(&film).map_err(|error| scene_error(error, source))?;
-    if touches {
-        let problem = "film touches film at the start, so contact cannot distinguish its two sides";
-        if tree.get("contact").is_some() {
-            let allowed = "a gap between layers, however small; or contact.enabled false";
-            return Err(source.error("contact", "", problem, allowed).into());
-        }
-        notes.push(format!("{problem}: contact is off, and film passes through film"));
-        film.contact = None;
-    }
-    Ok(film)
 }
 
 /// The scene as stored, and the hash of everything that decides its results.

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use billow_solver::geometry::mesh_io::obj_reader::{self, Surface};
+use billow_solver::geometry::mesh_io::obj_reader::Surface;
 
+use super::formats::{self, Read};
 use super::memory::{Needs, check_file};
 use crate::input::source::Source;
 use crate::platform::error::{Error, Result};
@@ -28,22 +29,36 @@ pub(crate) struct Reader {
     pub hashes: BTreeMap<String, String>,
     /// What decides the memory of the scene.
     pub needs: Needs,
+    /// How files were read.
+    pub notes: Vec<String>,
 }
 
 impl Reader {
-    /// The surface of an OBJ file that a key names.
+    /// The reader of a scene file.
+    pub fn new(path: &Path) -> Self {
+        Self {
+            source: Source::new(&path.display().to_string()),
+            folder: path.parent().unwrap_or(Path::new("")).to_owned(),
+            hashes: BTreeMap::new(),
+            needs: Needs::default(),
+            notes: Vec::new(),
+        }
+    }
+
+    /// The surface of a mesh file that a key names. Notes how it was read.
     pub fn surface(&mut self, key: &str, name: &str) -> Result<Surface> {
-        let text = self.text(key, name)?;
-        let surface = obj_reader::read(&text).map_err(|error| {
-            let problem = format!("line {}: {}", error.line, error.problem);
-            self.source.error(key, format!("{name:?}"), problem, error.allowed)
-        })?;
+        let bytes = self.bytes(key, name)?;
+        let Read { surface, note } =
+            formats::read(name, &bytes).map_err(|(problem, allowed)| {
+                self.source.error(key, format!("{name:?}"), problem, allowed)
+            })?;
+        self.notes.extend(note.map(|note| format!("{key}: {note}")));
         self.needs.check_surface(&surface, key, name, &self.source)?;
         Ok(surface)
     }
 
-    /// The text of a file that a key names.
-    fn text(&mut self, key: &str, name: &str) -> Result<String> {
+    /// The bytes of a file that a key names.
+    pub fn bytes(&mut self, key: &str, name: &str) -> Result<Vec<u8>> {
         let path = self.folder.join(name);
         let disk = |problem: String| Error::Disk { path: path.clone(), problem };
         let bytes = files::read_at_most(&path, MAX_MESH_SIZE)
@@ -59,9 +74,6 @@ impl Reader {
             })?;
         check_file(bytes.len(), key, name, &self.source)?;
         self.hashes.insert(name.to_owned(), bytes_hash(&bytes));
-        String::from_utf8(bytes).map_err(|error| {
-            let byte = error.utf8_error().valid_up_to();
-            disk(format!("is not UTF-8 from byte {byte} on\n  next: save it as UTF-8"))
-        })
+        Ok(bytes)
     }
 }

@@ -24,13 +24,24 @@ pub(super) fn reference(
         face.corners.iter().map(|v| surface.vertices[*v as usize]).collect()
     };
     // Corners of the given faces, in order, with the name of each for errors.
+    let unit = object.number("texture_unit")?;
     let given: Vec<(Vec<Vector3<f64>>, String)> = match object.given("reference") {
-        None => return Ok(surface.faces.iter().map(start).collect()),
+        Some(_) if unit.is_some() => {
+            let problem = "is given beside reference: both are the stress-free shape";
+            return Err(object.error("texture_unit", problem, "one of the two").into());
+        }
+        None => {
+            let Some(unit) = unit else { return Ok(surface.faces.iter().map(start).collect()) };
+            return texture(object, surface, unit);
+        }
         Some(Json::Text(name)) => {
             let flat = reader.surface("mesh.reference", name)?;
             let position = |v: &u32| flat.vertices[*v as usize] * scale;
             let corners = |face: &Face| face.corners.iter().map(position).collect();
-            flat.faces.iter().map(|face| (corners(face), format!("line {}", face.line))).collect()
+            flat.faces
+                .iter()
+                .map(|face| (corners(face), format!("the face {}", face.place)))
+                .collect()
         }
         Some(_) => {
             return Err(object.error("reference", "is not the name of a file", REFERENCE).into());
@@ -54,9 +65,9 @@ pub(super) fn reference(
         let (corners, name) = corners.unwrap_or_else(|| (start(face), String::new()));
         if corners.len() != face.corners.len() {
             let problem = format!(
-                "{name} has {} corners, the face of positions on line {} has {}",
+                "{name} has {} corners, the face {} of positions has {}",
                 corners.len(),
-                face.line,
+                face.place,
                 face.corners.len()
             );
             return Err(object.error("reference", problem, REFERENCE).into());
@@ -66,9 +77,28 @@ pub(super) fn reference(
     Ok(reference)
 }
 
+/// The texture coordinates of each face as its stress-free shape, with one unit of them this long, m.
+fn texture(object: &Object<'_>, surface: &Surface, unit: f64) -> Result<Reference> {
+    let of_face = |face: &Face| {
+        let corners = face.texture.iter().map(|index| {
+            let [u, v] = surface.texture[*index as usize];
+            Vector3::new(u, v, 0.0) * unit
+        });
+        let corners: Vec<Vector3<f64>> = corners.collect();
+        let is_finite = corners.iter().all(|corner| corner.iter().all(|x| x.is_finite()));
+        if corners.len() == face.corners.len() && is_finite {
+            return Ok(corners);
+        }
+        let problem = format!("the face {} of positions has no texture coordinates", face.place);
+        let allowed = "an OBJ file whose faces all have them, as in `f 1/4 2/5 3/6` with `vt u v`";
+        Err(object.error("texture_unit", problem, allowed).into())
+    };
+    surface.faces.iter().map(of_face).collect()
+}
+
 /// What `reference` may be, for errors.
 const REFERENCE: &str =
-    "an OBJ file with the faces of positions in the same order (of the film, or all)";
+    "a file with the faces of positions in the same order (of the film, or all)";
 
 /// The stress-free triangle in its own plane.
 pub(super) fn flattened(
@@ -82,7 +112,7 @@ pub(super) fn flattened(
     if area > 0.0 && area.is_finite() {
         return Ok(flat);
     }
-    let problem = format!("the face on line {} of positions has no area there", face.line);
+    let problem = format!("the face {} of positions has no area there", face.place);
     Err(object
         .error(
             flat_key(object),
@@ -94,5 +124,8 @@ pub(super) fn flattened(
 
 /// The key whose file has the stress-free faces.
 pub(super) fn flat_key(object: &Object<'_>) -> &'static str {
-    if object.given("reference").is_some() { "reference" } else { "positions" }
+    ["reference", "texture_unit"]
+        .into_iter()
+        .find(|key| object.given(key).is_some())
+        .unwrap_or("positions")
 }

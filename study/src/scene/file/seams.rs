@@ -45,10 +45,10 @@ pub(super) fn check(shape: &Shape, source: &Source) -> Result<(), InputError> {
             0.0 => "0".to_owned(),
             distance => format!("\"{:.1e} m\"", 1.1 * distance),
         };
-        let near = format!("OBJ vertices {first} and {a} (counted from 1)");
+        let near = format!("vertices {first} and {a} (counted from 1)");
         (near, format!("join the seam, or set mesh.weld to {weld}, which joins these vertices"))
     } else {
-        let near = format!("OBJ vertex {first} and the edge between {a} and {b} (counted from 1)");
+        let near = format!("vertex {first} and the edge between {a} and {b} (counted from 1)");
         (near, "make the vertex a corner of the face on the other side too".to_owned())
     };
     let problem = format!(

@@ -71,17 +71,11 @@ impl Numbering {
             if rest < triangles {
                 let corner = self.surface.vertices[face.corners[0] as usize] + self.origin;
                 let [x, y, z] = corner.into();
-                if face.line == 0 {
-                    return format!(
-                        "element {} (at [{x}, {y}, {z}] m)",
-                        element.unwrap_or_default()
-                    );
-                }
                 let vertices: Vec<String> =
                     face.corners.iter().map(|vertex| (vertex + 1).to_string()).collect();
                 return format!(
-                    "the face on line {} (OBJ vertices {}, at [{x}, {y}, {z}] m)",
-                    face.line,
+                    "the face {} (vertices {}, at [{x}, {y}, {z}] m)",
+                    face.place,
                     vertices.join(" ")
                 );
             }
