@@ -216,6 +216,11 @@ fn elsewhere(refused: &clap::Error) -> Option<String> {
         let (_, meant) = SYNONYMS.iter().find(|(synonym, _)| *synonym == word)?;
         return Some(format!("billow {meant}"));
     }
+    if refused.kind() == ErrorKind::MissingRequiredArgument
+        && refused.to_string().contains("--base <VALUE>")
+    {
+        return Some("give both, or --rank, which needs neither".to_owned());
+    }
     let option = word(ContextKind::InvalidArg)?.strip_prefix("--")?;
     let option = option.split(['=', ' ']).next()?;
     let program = Command::augment_subcommands(clap::Command::new("billow"));

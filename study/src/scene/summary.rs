@@ -33,7 +33,7 @@ pub fn summary(scene: &SceneFile, solved: &Solved) -> Json {
             let stop = json!({
                 "kind": Status::NoEquilibrium.name(),
                 "time": null,
-                "location": format!("node {}: {failure}", node_name(scene, failure.node)),
+                "location": format!("node {}: {failure}", node_place(scene, failure.node)),
             });
             let elements = scene.film.shell.triangles.len();
             json!({"stop": stop, "steps": failure.iterations, "elements": elements})
@@ -91,6 +91,14 @@ fn next_steps(scene: &SceneFile, summary: &Json, solved: &Solved) -> Vec<String>
 fn node_name(scene: &SceneFile, node: usize) -> String {
     let vertex = u32::try_from(node).ok().and_then(|node| scene.numbering.vertex(node));
     vertex.map_or_else(|| format!("{node} of the run"), |vertex| vertex.to_string())
+}
+
+/// Number of a node in the user's file, from 0, and its place at the start.
+fn node_place(scene: &SceneFile, node: usize) -> String {
+    let place = scene.film.shell.positions.get(node);
+    let place = place.map(|place| <[f64; 3]>::from(place + scene.numbering.origin));
+    let place = place.map_or_else(String::new, |place| format!(" (at {place:?} m)"));
+    format!("{}{place}", node_name(scene, node))
 }
 
 /// What every film has: nodes, resultants, extents.

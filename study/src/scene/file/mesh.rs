@@ -57,6 +57,10 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
     }
     let tolerance = object.number("weld")?;
     let joined = weld::joined(&surface.vertices, tolerance);
+    if tolerance.is_some() {
+        let others = (0..).zip(&joined).filter(|(vertex, first)| *vertex != **first).count();
+        reader.notes.push(format!("mesh.weld: vertices joined to others: {others}"));
+    }
     let closes = closing_groups(&object, &surface)?;
     let film: Vec<bool> = surface.faces.iter().map(|face| !closes[face.names]).collect();
     if !film.contains(&true) {
