@@ -54,8 +54,8 @@ pub enum Filling {
 /// Contact of film with film and with plates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmContact {
-    /// Contact distance, m; `None` for 0.4 times the smallest initial gap that is not that of a single spot. A capsule has a default of its design
-    /// ([`crate::models::film::capsule::resolved_contact`]).
+    /// Contact distance, m; `None` for 0.4 times the smallest initial gap that is not that of a single spot. A capsule
+    /// has a default of its design ([`crate::models::film::capsule::resolved_contact`]).
     pub distance: Option<f64>,
     /// Coulomb friction coefficient.
     pub friction: f64,

@@ -14,8 +14,8 @@ use crate::render::projection::View;
 use crate::scene::check;
 use crate::scene::file::SceneFile;
 
-/// Directions of view: azimuth and elevation, degrees. Chosen: opposite sides.
-const VIEWS: f64 = 30.0;
+/// Azimuth and elevation of the view, degrees.
+const VIEW: f64 = 30.0;
 
 /// Draws the mesh of a scene, with a cross at each place that a message about it names, or that has a free edge.
 ///
@@ -84,7 +84,7 @@ pub fn write(path: &Path, file: &Path, sets: &[String], scene: &Result<SceneFile
         triangles: &triangles,
         storeys: &vec![0; triangles.len()],
         frames: &[frame],
-        view: View::new(VIEWS.to_radians(), VIEWS.to_radians()),
+        view: View::new(VIEW.to_radians(), VIEW.to_radians()),
         colour: Colour::Plain,
         smooth: false,
         values: &[],

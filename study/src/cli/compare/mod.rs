@@ -55,7 +55,8 @@ pub struct Args {
     #[arg(long, conflicts_with_all = ["tie", "runs", "summary"])]
     rank: bool,
     /// Measures, comma-separated [default: `t_90_z_rim_since_release,peak_kinetic_energy`, in a study with limits
-    /// those that it limits and `smallest_margin`; for csv and json all measures for which smaller or larger is better; with --rank
+    /// those that it limits and `smallest_margin`; for csv and json all measures for which smaller or larger is
+    /// better; with --rank
     /// those that the study limits, then `peak_vz,peak_kinetic_energy,t_90_z_rim_since_release`].
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     measures: Vec<String>,
