@@ -69,7 +69,7 @@ const MAX_DISTANCE_PER_EDGE: f64 = 0.02;
 impl ContactModel {
     /// Contact of a film at `positions` (m), without plates, friction and adhesion.
     ///
-    /// `distance` (m) is the contact distance; `None` for the [`common_distance`] of these positions. `ignored`: pairs of
+    /// `distance` (m) is the contact distance; `None` for the `common_distance` of these positions. `ignored`: pairs of
     /// elements without contact.
     pub fn of_film(
         film: &FilmModel,
