@@ -2,7 +2,7 @@
 
 use super::{GasSupply, InflowWindow, Vent};
 
-/// Total inflow of all open windows.
+/// Total inflow of all open windows, and whether gas can leave by the vent.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Inflow {
     /// Mass flow rate Σ ṁ, kg/s.

@@ -10,6 +10,7 @@ use crate::job::row::Counts;
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, disk_error};
+use crate::platform::quote;
 use crate::platform::stop::Stop;
 use crate::print::count;
 use crate::run::merge::{self, Merged};
@@ -100,7 +101,7 @@ fn print(folder: &Path, merged: &Merged, format: Format, out: &mut dyn Write) ->
     for point in stored.points.iter() {
         counts.add_cells(&stored.cells(point));
     }
-    let root = crate::platform::quote::path(folder);
+    let root = quote::path(folder);
     if format == Format::Json {
         let json = serde_json::json!({
             "study": stored.study.name,

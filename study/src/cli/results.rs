@@ -10,6 +10,7 @@ use crate::input::value::Value;
 use crate::job::row::CellType;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{self, Disk, Files};
+use crate::platform::quote;
 use crate::print::count;
 use crate::store::journal::Fault;
 use crate::store::results::Results;
@@ -128,7 +129,7 @@ fn note_faults(stored: &Stored<'_>) {
     if more > 0 {
         eprintln!("billow: damaged: {more} more lines of the journal");
     }
-    let root = crate::platform::quote::path(results.root());
+    let root = quote::path(results.root());
     if journal.is_empty() && results.table_path().exists() {
         eprintln!(
             "billow: {root}: no journal: no job counts as finished\n  next: billow doctor {root}"

@@ -17,6 +17,7 @@ use crate::job::row::COLUMNS;
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, disk_error};
+use crate::platform::quote;
 use crate::platform::stop::Stop;
 use crate::print::notes;
 use crate::print::{count, points_of_runs};
@@ -209,7 +210,7 @@ impl Ended<'_> {
         }
         if counts.jobs() == 0 {
             writeln!(out, "{name}: nothing to run, no fold pattern fits any of {points}")?;
-            let root = crate::platform::quote::path(root);
+            let root = quote::path(root);
             writeln!(out, "  next     billow table {root} --columns job,reason,nearest")?;
         } else if summary.ran == 0 && counts.of(Status::Pending) == 0 {
             writeln!(out, "{name}: nothing to run, all {} jobs are finished", counts.jobs())?;

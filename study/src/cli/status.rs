@@ -267,10 +267,7 @@ impl<'a> Status<'a> {
         if self.faults.iter().all(|fault| fault.torn) {
             return format!("{first}{more}; nothing else is lost, `billow run` runs it again");
         }
-        format!(
-            "{first}{more}; next: billow doctor {}",
-            crate::platform::quote::path(self.stored.results.root())
-        )
+        format!("{first}{more}; next: billow doctor {}", quote::path(self.stored.results.root()))
     }
 }
 
@@ -299,7 +296,7 @@ impl Submission {
             let ended = part.journal()?.records.into_keys();
             unmerged.extend(ended.filter(|id| stored.record(id).is_none()));
         }
-        let merge = format!("billow merge {}", crate::platform::quote::path(results.root()));
+        let merge = format!("billow merge {}", quote::path(results.root()));
         Ok(Self { queued, queue, unmerged: unmerged.len(), merge })
     }
 

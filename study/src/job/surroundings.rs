@@ -13,7 +13,7 @@ use super::point::Solved;
 use crate::input::value::brief_number;
 
 /// Specific gas constant of dry air, J/(kg K).
-const AIR: f64 = 287.055;
+const AIR_GAS_CONSTANT: f64 = 287.055;
 /// Lift over the weight of the film above which a scene is refused. Chosen: gravity is then wrong by a quarter.
 const MAX_LIFT: f64 = 0.25;
 /// Lift and moved mass, over the film's, from which a note says so. Chosen: less is below other errors.
@@ -33,7 +33,7 @@ impl Surroundings {
     pub fn new(film: &Film, gas: &GasSupply, [area, volume]: [f64; 2], gravity: bool) -> Self {
         let mass = film.density * film.thickness * area;
         let density = |gas_constant| gas.ambient_pressure / (gas_constant * film.temperature);
-        let (air, inside) = (density(AIR), density(gas.species.gas_constant));
+        let (air, inside) = (density(AIR_GAS_CONSTANT), density(gas.species.gas_constant));
         let lift = if gravity { (air - inside).abs() * volume / mass } else { 0.0 };
         let moved_mass = air * libm::cbrt(volume) * area / (core::f64::consts::PI * mass);
         Self { lift, moved_mass }
@@ -99,7 +99,7 @@ mod tests {
             (0.0, -9.81, 296.8, 0.0, 0.0, false, 0),
             (101_325.0, 0.0, 296.8, 0.0, 9.1, false, 1),
             (101_325.0, -9.81, 296.8, 0.17, 9.1, false, 2),
-            (101_325.0, -9.81, AIR, 0.0, 9.1, false, 1),
+            (101_325.0, -9.81, AIR_GAS_CONSTANT, 0.0, 9.1, false, 1),
             (101_325.0, 9.81, 2077.0, 4.5, 9.1, true, 2),
             (101_325.0, 0.0, 2077.0, 0.0, 9.1, false, 1),
             (101_325.0, -9.81, 188.9, 2.7, 9.1, true, 2),

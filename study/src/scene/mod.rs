@@ -2,5 +2,6 @@
 
 pub mod check;
 pub mod file;
+mod next_steps;
 pub mod solve;
 pub mod summary;

@@ -11,7 +11,6 @@ use billow_solver::models::film::{FILM_STRESS_99, FilmRun};
 use billow_solver::models::run::FILM_SPEED;
 use billow_solver::output::outcome::{Deployment, FailureKind, Stop};
 use billow_solver::scene::film_scene::Filling;
-use billow_solver::scene::{ModelKind, Solver, Stepping};
 use billow_solver::statics::StaticSolution;
 use billow_solver::system::PressureLoad;
 use nalgebra::Vector3;
@@ -19,9 +18,8 @@ use serde_json::{Map, Value as Json, json};
 
 use crate::input::value::Value;
 use crate::job::Status;
-use crate::job::row::{Cells, ColumnId};
-use crate::job::suggestions::{Suggestion, suggestions};
 use crate::scene::file::SceneFile;
+use crate::scene::next_steps;
 use crate::scene::solve::{Ended, Solved};
 
 /// The summary of a solved scene.
@@ -39,7 +37,7 @@ pub fn summary(scene: &SceneFile, solved: &Solved) -> Json {
             json!({"stop": stop, "steps": failure.iterations, "elements": elements})
         }
     };
-    let next = next_steps(scene, &summary, solved);
+    let next = next_steps::of(scene, &summary, solved);
     if !next.is_empty() {
         summary["stop"]["next"] = next.into();
     }
@@ -49,42 +47,6 @@ pub fn summary(scene: &SceneFile, solved: &Solved) -> Json {
     summary["status"] = solved.status.name().into();
     summary["wall_seconds"] = solved.wall_seconds.into();
     summary
-}
-
-/// What to try after a run without a result: for static equilibrium here, else what a study suggests for such a job.
-fn next_steps(scene: &SceneFile, summary: &Json, solved: &Solved) -> Vec<String> {
-    let status = solved.status;
-    if status == Status::NoEquilibrium {
-        return vec![
-            "hold film that can move freely (supports); start nearer to the equilibrium (mesh.positions), or with a \
-             smaller gas.pressure"
-                .to_owned(),
-            "or find it by motion: solver.static false with solver.end_time and solver.mass_damping".to_owned(),
-        ];
-    }
-    let film = &scene.film.solver;
-    let solver = Solver {
-        model: ModelKind::Film,
-        end_time: film.end_time,
-        integrator: film.integrator,
-        stepping: Stepping::Stable(film.cfl),
-        step_limit: film.step_limit,
-    };
-    let mut cells = Cells::new(status);
-    let number = |value: &Json| value.as_f64();
-    cells.set(ColumnId::Steps, summary["steps"].as_i64());
-    cells.set(ColumnId::PeakKineticEnergy, number(&summary["measures"]["peak_kinetic_energy"]));
-    if let Ended::Motion(motion) = &solved.end
-        && let Stop::Failed(failure) = &motion.1.stop
-    {
-        cells.set(ColumnId::StopAudit, Some(failure.audit.name()));
-    }
-    let found = suggestions(&cells, &solver).into_iter();
-    let text = |suggestion: Suggestion| match suggestion.set {
-        Some(set) => format!("--set {set}: {}", suggestion.text),
-        None => suggestion.text.to_owned(),
-    };
-    found.filter(|_| matches!(status, Status::Failed(_))).map(text).collect()
 }
 
 /// Number of a node in the user's file, from 0.

@@ -14,6 +14,7 @@ use crate::job::row::{Cells, ColumnId};
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::provenance::PHYSICS_VERSION;
+use crate::platform::quote;
 use crate::store::finished;
 use crate::store::journal::{self, Journal, Record};
 use crate::store::results::Results;
@@ -47,7 +48,7 @@ impl<'a> Stored<'a> {
     /// [`Error::Disk`] when there is no study.json, or when a file cannot be read.
     pub fn read(results: Results<'a>) -> Result<Self> {
         if results.owner()?.is_none() {
-            let root = crate::platform::quote::path(results.root());
+            let root = quote::path(results.root());
             let problem = if results.journal_path().is_dir() {
                 format!("study.json is missing\n  next: billow doctor --repair {root}")
             } else {
@@ -174,7 +175,7 @@ impl<'a> Stored<'a> {
     pub fn history_path(&self, id: &JobId) -> Result<PathBuf> {
         let path = self.results.job_path(id);
         let record = self.record(id);
-        let root = crate::platform::quote::path(self.results.root());
+        let root = quote::path(self.results.root());
         let (why, next) = match (self.point(id), record) {
             (_, Some(record)) if record.file_hash.is_some() => {
                 return self.results.check_history(record).map(|()| path);
@@ -235,10 +236,7 @@ impl<'a> Stored<'a> {
             } else {
                 format!("the first digits of one id: {}", allowed.join("; "))
             },
-            hint: format!(
-                "billow table {} --columns job",
-                crate::platform::quote::path(self.results.root())
-            ),
+            hint: format!("billow table {} --columns job", quote::path(self.results.root())),
         }
         .into()
     }

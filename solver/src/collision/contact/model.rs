@@ -69,8 +69,8 @@ const MAX_DISTANCE_PER_EDGE: f64 = 0.02;
 impl ContactModel {
     /// Contact of a film at `positions` (m), without plates, friction and adhesion.
     ///
-    /// `distance` (m) is the contact distance; `None` for the `common_distance` of these positions. `ignored`: pairs of
-    /// elements without contact.
+    /// `distance` (m) is the contact distance; `None` for the [`default_distance`] of these positions. `ignored`: pairs
+    /// of elements without contact.
     pub fn of_film(
         film: &FilmModel,
         positions: &Field,
@@ -81,7 +81,8 @@ impl ContactModel {
         let mut mesh = CollisionMesh::new(film.nodes(), &film.triangles);
         mesh.topology.ignore(ignored);
         let edge_length = mean_edge_length(&mesh, positions);
-        let distance = distance.unwrap_or_else(|| common_distance(&mesh, positions));
+        let distance =
+            distance.unwrap_or_else(|| default_distance(&mesh, positions, MIN_NODES_NEAR));
         let frequency = film.largest_frequency();
         let mut model = Self::new(mesh, distance, frequency, edge_length, instruction_set);
         let area: f64 = film.volume.iter().sum::<f64>() / film.thickness;
@@ -197,13 +198,14 @@ fn is_ignored(topology: &Topology, kind: PairKind, [first, second]: [u32; 2]) ->
     }
 }
 
-/// Proportion of the nodes whose gaps are as small as the smallest that counts. Chosen: one bad spot of a mesh is far
-/// fewer, a layer far more.
-const COMMON: f64 = 0.01;
+/// Proportion of the nodes that have a gap as small as the smallest that counts, for film from a file. Chosen: one bad spot
+/// of a mesh has far fewer, a layer far more.
+const MIN_NODES_NEAR: f64 = 0.01;
 
-/// The contact distance of film at these positions (m) where none is given, m: as [`default_distance`], but the smallest
-/// gap is one up to twice of which a hundredth of the nodes have theirs. Pairs that start closer keep their gap as offset.
-fn common_distance(mesh: &CollisionMesh, positions: &Field) -> f64 {
+/// The default contact distance of film at these positions (m), m: 0.4 of the smallest gap of a node and an element up to
+/// twice of which this proportion of the nodes, at least one, have theirs; but at most 0.02 of the mean edge length.
+/// Pairs that start closer keep their gap as offset.
+pub fn default_distance(mesh: &CollisionMesh, positions: &Field, proportion: f64) -> f64 {
     let max_distance = MAX_DISTANCE_PER_EDGE * mean_edge_length(mesh, positions);
     let mut gap_of = vec![f64::INFINITY; mesh.topology.nodes()];
     pairs_within(mesh, positions, max_distance / DISTANCE_PER_GAP, |pair, gap| {
@@ -215,23 +217,10 @@ fn common_distance(mesh: &CollisionMesh, positions: &Field) -> f64 {
     let mut gaps: Vec<f64> = gap_of.iter().copied().filter(|gap| gap.is_finite()).collect();
     gaps.sort_by(f64::total_cmp);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small number")]
-    let needed = libm::ceil(COMMON * gap_of.len() as f64) as usize;
-    let is_common = |gap: &f64| gaps.partition_point(|other| *other <= 2.0 * gap) >= needed;
-    let gap = gaps.iter().copied().find(is_common).unwrap_or(f64::INFINITY);
+    let needed = (libm::ceil(proportion * gap_of.len() as f64) as usize).max(1);
+    let counts = |gap: &f64| gaps.partition_point(|other| *other <= 2.0 * gap) >= needed;
+    let gap = gaps.iter().copied().find(counts).unwrap_or(f64::INFINITY);
     (DISTANCE_PER_GAP * gap).min(max_distance)
-}
-
-/// The default contact distance of film at these positions (m), m: 0.4 of the smallest gap of a node
-/// and an element, but at most 0.02 of the mean edge length.
-pub fn default_distance(mesh: &CollisionMesh, positions: &Field) -> f64 {
-    let max_distance = MAX_DISTANCE_PER_EDGE * mean_edge_length(mesh, positions);
-    let mut smallest_gap = f64::INFINITY;
-    pairs_within(mesh, positions, max_distance / DISTANCE_PER_GAP, |pair, gap| {
-        if pair.kind == PairKind::NodeElement {
-            smallest_gap = smallest_gap.min(gap);
-        }
-    });
-    (DISTANCE_PER_GAP * smallest_gap).min(max_distance)
 }
 
 /// Mean edge length, m.

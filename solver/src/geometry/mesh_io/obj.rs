@@ -50,7 +50,7 @@ pub fn developed(pattern: &FoldPattern, mesh: &Mesh, title: &str) -> String {
     let places = layout(pattern);
     let of_piece = mesh.triangles.len() / places.len();
     // A node of the seam, and of a ring, is at several places of the layout.
-    let grain = GRAIN * pattern.polygon_radius(0);
+    let tolerance = VERTEX_TOLERANCE * pattern.polygon_radius(0);
     let mut vertices: BTreeMap<(u32, [i64; 2]), u32> = BTreeMap::new();
     let (mut text, mut faces) = (header(title), String::new());
     let mut group = None;
@@ -63,9 +63,9 @@ pub fn developed(pattern: &FoldPattern, mesh: &Mesh, title: &str) -> String {
             let place = places[element / of_piece] * Point2::from(mesh.reference[element][corner]);
             #[expect(
                 clippy::cast_possible_truncation,
-                reason = "a few lengths of a film over its grain"
+                reason = "lengths of a film over its tolerance"
             )]
-            let rounded = [place.x, place.y].map(|x| libm::round(x / grain) as i64);
+            let rounded = [place.x, place.y].map(|x| libm::round(x / tolerance) as i64);
             let next = u32::try_from(vertices.len()).unwrap_or(u32::MAX);
             *vertices.entry((triangle[corner], rounded)).or_insert_with(|| {
                 vertex(&mut text, Vector3::new(place.x, place.y, 0.0));
@@ -108,7 +108,7 @@ fn layout(pattern: &FoldPattern) -> Vec<Isometry2<f64>> {
 
 /// Distance up to which places of one node are one vertex, over the circumradius of the bottom cap. Chosen: far above
 /// rounding, far below an element.
-const GRAIN: f64 = 1e-7;
+const VERTEX_TOLERANCE: f64 = 1e-7;
 
 /// Gap between the pieces of a layout over the circumradius of the bottom cap. Chosen: easy to see.
 const GAP_OVER_RADIUS: f64 = 0.2;

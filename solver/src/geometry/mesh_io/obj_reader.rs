@@ -73,10 +73,14 @@ const FACE: &str = "three or more different vertices by number, 1 for the first 
 pub fn read(text: &str) -> Result<Surface, ObjError> {
     let mut surface = Surface::default();
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let is_vertex = |line: &str| line.split_whitespace().next() == Some("v");
-    let vertices = lines(text).filter(|(_, line)| is_vertex(line)).count();
-    let is_texture = |line: &str| line.split_whitespace().next() == Some("vt");
-    let textures = lines(text).filter(|(_, line)| is_texture(line)).count();
+    let (mut vertices, mut textures) = (0, 0);
+    for (_, line) in lines(text) {
+        match line.split_whitespace().next() {
+            Some("v") => vertices += 1,
+            Some("vt") => textures += 1,
+            _ => {}
+        }
+    }
     let (mut groups, mut object) = (Vec::new(), Vec::new());
     for (line, content) in lines(text) {
         let mut words = content.split_whitespace();

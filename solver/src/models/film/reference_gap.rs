@@ -35,7 +35,7 @@ pub fn reference_gap(design: &FoldDesign) -> Result<f64, FoldError> {
     let mesh = Mesh::new(&FoldPattern::new(&design)?, COMPUTED_SUBDIVISIONS, stowed)?;
     let positions = Field::of(&mesh.positions);
     let mesh = CollisionMesh::new(positions.len(), &mesh.triangles);
-    let gap = default_distance(&mesh, &positions) / DISTANCE_PER_GAP;
+    let gap = default_distance(&mesh, &positions, 0.0) / DISTANCE_PER_GAP;
     Ok(gap * f64::from(COMPUTED_SUBDIVISIONS) / f64::from(REFERENCE_SUBDIVISIONS))
 }
 

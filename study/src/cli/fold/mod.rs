@@ -250,7 +250,7 @@ fn check_size(design: &FoldDesign) -> Result<()> {
 
 /// A scene that inflates the stowed shape, held by its bottom ring, for `billow solve`.
 fn scene(stowed_height: f64) -> String {
-    let held: f64 = short_number(HELD * stowed_height).parse().unwrap_or_default();
+    let held: f64 = short_number(HELD_HEIGHT * stowed_height).parse().unwrap_or_default();
     let json = json!({
         "mesh": {"positions": "stowed.obj", "reference": "developed.obj"},
         "gas": {"windows": [{"mass_flow_rate": "5 g/s"}]},
@@ -262,7 +262,7 @@ fn scene(stowed_height: f64) -> String {
 }
 
 /// Height over that of the stack up to which nodes are held. Chosen: far below a layer, far above rounding.
-const HELD: f64 = 1e-4;
+const HELD_HEIGHT: f64 = 1e-4;
 
 fn write_files(
     files: &dyn Files,
@@ -284,15 +284,13 @@ fn write_files(
     if design.caps == Caps::Circular {
         eprintln!("billow: circular caps cannot be folded; only the erected shape is written");
     } else {
+        let flat = mesh(Shape::Flat)?;
         texts.extend([
             ("crease_pattern.fold", fold_text::crease_pattern(pattern, &title)),
             ("crease_pattern.svg", drawing),
-            ("flat.obj", shape(Shape::Flat, "flat folded")?),
+            ("flat.obj", obj::mesh(&flat, &format!("{title}, flat folded"))),
             ("stowed.obj", shape(Shape::Stowed(design.stowed_height), "stowed")?),
-            (
-                "developed.obj",
-                obj::developed(pattern, &mesh(Shape::Flat)?, &format!("{title}, developed")),
-            ),
+            ("developed.obj", obj::developed(pattern, &flat, &format!("{title}, developed"))),
             ("scene.json", scene(design.stowed_height)),
         ]);
     }

@@ -1,5 +1,6 @@
 //! Why a job has no result, and what to do about it.
 
+use crate::platform::quote;
 use billow_solver::output::outcome::FailureKind;
 
 use super::Inspected;
@@ -42,7 +43,7 @@ pub(super) fn explanation(job: &Inspected) -> (Vec<TopicLine>, String) {
 
 /// What a status means, and what to do about it.
 fn meaning_and_next(job: &Inspected) -> (&'static str, String) {
-    let (id, root) = (job.id.short(), crate::platform::quote::path(job.stored.results.root()));
+    let (id, root) = (job.id.short(), quote::path(job.stored.results.root()));
     let history = format!("billow job {id} {root} --history");
     let again = format!("billow run {root} --again {id}");
     let has_history = !job.cells.text(ColumnId::ContentHash).is_empty();

@@ -17,6 +17,7 @@ use crate::job::row::{COLUMNS, Cells, ColumnId};
 use crate::job::suggestions::{Suggestion, suggestions};
 use crate::job::{JobId, Status};
 use crate::platform::error::Result;
+use crate::platform::quote;
 use crate::print::{TopicLine, print_rows};
 use crate::scene::summary;
 use crate::store::stored::Stored;
@@ -129,7 +130,7 @@ impl Inspected {
     /// Every line of the explanation; the last one is the next step.
     fn explanation(&self) -> Result<Vec<TopicLine>> {
         let Self { stored, id, cells } = self;
-        let root = crate::platform::quote::path(stored.results.root());
+        let root = quote::path(stored.results.root());
         let (mut lines, next) = match cells.status() {
             Status::Done => verdict::explanation(self),
             Status::Pending => {

@@ -1,5 +1,6 @@
 //! The numbers behind a verdict: ratios of the last tenth of the run against their thresholds.
 
+use crate::platform::quote;
 use billow_solver::output::measures::Verdict;
 
 use super::{Inspected, percent};
@@ -62,7 +63,7 @@ pub(super) fn explanation(job: &Inspected) -> (Vec<TopicLine>, String) {
         let next = "a longer solver.end_time: the film was still moving at the end of the run";
         return (lines, next.to_owned());
     }
-    let root = crate::platform::quote::path(job.stored.results.root());
+    let root = quote::path(job.stored.results.root());
     (lines, format!("billow job {} {root} --history", job.id.short()))
 }
 

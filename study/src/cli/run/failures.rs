@@ -10,6 +10,7 @@ use super::listed;
 use crate::job::limits::JobLimits;
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
+use crate::platform::quote;
 use crate::print::count;
 use crate::run::runner::Summary;
 use crate::study::Study;
@@ -35,10 +36,10 @@ pub(super) fn result(
             "{} failed{}\n  next: billow table {}{} --columns job,status,stop_time,stop_audit,stop_location\n        billow job JOB {}{}",
             count(failed, "job"),
             limited(&summary.counts.failures()),
-            crate::platform::quote::path(root),
+            quote::path(root),
             // A point of several runs has no job.
             if study.replicate_count() > 1 { " --runs" } else { "" },
-            crate::platform::quote::path(root),
+            quote::path(root),
             next_of_limited(summary, limits, root),
         ))),
     }
@@ -67,7 +68,7 @@ fn next_of_limited(summary: &Summary, limits: &JobLimits, root: &Path) -> String
         // Without job_limits.steps it is solver.step_limit that was reached.
         let by_limit = status != Status::Failed(FailureKind::StepLimit) || limits.steps.is_some();
         if by_limit && summary.counts.of(status) > 0 {
-            let root = crate::platform::quote::path(root);
+            let root = quote::path(root);
             // Without job_limits.memory it is the machine's memory, or a limit of the process.
             let by_machine = status == Status::OutOfMemory && limits.memory.is_none();
             let option = if by_machine { ", with more memory or a coarser mesh" } else { option };

@@ -1,6 +1,6 @@
 //! `contact`: contact of film with film and with plates.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use billow_solver::collision::contact::{ContactModel, PairKind};
 use billow_solver::collision::monitor::intersections::intersections;
@@ -96,23 +96,14 @@ impl StartPairs {
     fn of(model: &ContactModel, positions: &Field) -> Self {
         let topology = &model.mesh.topology;
         let mut at_node = vec![Vec::new(); topology.nodes()];
-        let mut at_edge = vec![Vec::new(); topology.edges.len()];
-        for (element, (nodes, edges)) in
-            (0_u32..).zip(topology.triangles.iter().zip(&topology.element_edges))
-        {
+        for (element, nodes) in (0_u32..).zip(&topology.triangles) {
             for node in nodes {
                 at_node[*node as usize].push(element);
             }
-            for edge in edges {
-                at_edge[*edge as usize].push(element);
-            }
         }
-        let mut all: BTreeSet<[u32; 2]> = BTreeSet::new();
-        let mut crossing = BTreeSet::new();
-        let add = |pairs: &mut BTreeSet<[u32; 2]>, some: &[u32], others: &[u32]| {
-            let both = some.iter().flat_map(|a| others.iter().map(move |b| [*a.min(b), *a.max(b)]));
-            pairs.extend(both.filter(|[a, b]| a != b));
-        };
+        let at_edge = elements_at_edges(topology);
+        let crossing = crossing(topology, &at_edge, positions);
+        let mut all = crossing.clone();
         model.pairs_within(positions, TOUCHING_DISTANCE * model.edge_length, |pair, _| {
             let (first, second) = (pair.first as usize, pair.second as usize);
             match pair.kind {
@@ -120,12 +111,34 @@ impl StartPairs {
                 PairKind::EdgeEdge => add(&mut all, &at_edge[first], &at_edge[second]),
             }
         });
-        for (edge, element) in intersections(topology, positions) {
-            add(&mut crossing, &at_edge[edge as usize], &[element]);
-        }
-        all.extend(&crossing);
         Self { all: all.into_iter().collect(), crossing: crossing.into_iter().collect() }
     }
+}
+
+/// Elements at each edge.
+fn elements_at_edges(topology: &Topology) -> Vec<Vec<u32>> {
+    let mut at_edge = vec![Vec::new(); topology.edges.len()];
+    for (element, edges) in (0_u32..).zip(&topology.element_edges) {
+        for edge in edges {
+            at_edge[*edge as usize].push(element);
+        }
+    }
+    at_edge
+}
+
+/// Adds every pair of two lists of elements, the lower number first.
+fn add(pairs: &mut BTreeSet<[u32; 2]>, some: &[u32], others: &[u32]) {
+    let both = some.iter().flat_map(|a| others.iter().map(move |b| [*a.min(b), *a.max(b)]));
+    pairs.extend(both.filter(|[a, b]| a != b));
+}
+
+/// Pairs of elements of which an edge of one passes through the other.
+fn crossing(topology: &Topology, at_edge: &[Vec<u32>], positions: &Field) -> BTreeSet<[u32; 2]> {
+    let mut pairs = BTreeSet::new();
+    for (edge, element) in intersections(topology, positions) {
+        add(&mut pairs, &at_edge[edge as usize], &[element]);
+    }
+    pairs
 }
 
 /// Film that starts in film: it has no side there. Its pairs of faces lose their contact where the scene says so
@@ -167,34 +180,31 @@ pub(super) fn settle_start(
 pub(super) fn crossing_film(film: &FilmScene, numbering: &Numbering) -> Option<String> {
     let shell = &film.shell;
     let topology = Topology::new(shell.positions.len(), &shell.triangles);
-    let found = intersections(&topology, &Field::of(&shell.positions));
-    let with_edge = |edge: u32| (0..).zip(&topology.element_edges).find(|(_, e)| e.contains(&edge));
-    let pairs = found.iter().filter_map(|(edge, element)| Some([with_edge(*edge)?.0, *element]));
-    let pairs: Vec<[u32; 2]> = pairs.take(MAX_SEARCHED).collect();
-    (!pairs.is_empty()).then(|| {
-        format!(
-            "film passes through film at the start{}: statics has no contact",
-            places(&pairs, numbering)
-        )
-    })
+    let positions = Field::of(&shell.positions);
+    let pairs = crossing(&topology, &elements_at_edges(&topology), &positions);
+    let pairs: Vec<[u32; 2]> = pairs.into_iter().collect();
+    let places = (!pairs.is_empty()).then(|| places(&pairs, numbering))?;
+    Some(format!("film passes through film at the start{places}: statics has no contact"))
 }
-
-/// Pairs of faces whose places are looked for. Chosen: a message names fewer.
-const MAX_SEARCHED: usize = 100;
 
 /// Some pairs of elements as pairs of faces: their number and the places of the first.
 fn places(pairs: &[[u32; 2]], numbering: &Numbering) -> String {
-    let place = |element: u32| numbering.place(element as usize);
     // The triangles of one face have one place.
-    let pairs: BTreeSet<[String; 2]> = pairs.iter().map(|pair| pair.map(place)).collect();
-    let number = match pairs.len() {
+    let face_of = numbering.faces_of_elements();
+    let mut faces: BTreeMap<[usize; 2], [u32; 2]> = BTreeMap::new();
+    for pair in pairs {
+        faces.entry(pair.map(|element| face_of[element as usize])).or_insert(*pair);
+    }
+    let number = match faces.len() {
         1 => "in a pair of faces".to_owned(),
         number => format!("in {number} pairs of faces"),
     };
-    let shown: Vec<String> =
-        pairs.iter().take(MAX_SHOWN).map(|[a, b]| format!("{a} and {b}")).collect();
-    let more = if pairs.len() > MAX_SHOWN { "; …" } else { "" };
-    format!(", {number}: {}{more}", shown.join("; "))
+    let shown = faces.values().take(MAX_SHOWN).map(|pair| {
+        let [a, b] = pair.map(|element| numbering.place(element as usize));
+        format!("{a} and {b}")
+    });
+    let more = if faces.len() > MAX_SHOWN { "; …" } else { "" };
+    format!(", {number}: {}{more}", shown.collect::<Vec<_>>().join("; "))
 }
 
 /// Most pairs of faces that a message names.

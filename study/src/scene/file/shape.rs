@@ -84,6 +84,14 @@ impl Numbering {
         "a face".to_owned()
     }
 
+    /// The face of each element, by its index in the surface.
+    pub fn faces_of_elements(&self) -> Vec<usize> {
+        let faces = self.surface.faces.iter().enumerate();
+        let triangles = faces.flat_map(|(index, face)| vec![index; face.corners.len() - 2]);
+        let film = triangles.zip(&self.element).filter(|(_, element)| element.is_some());
+        film.map(|(face, _)| face).collect()
+    }
+
     /// The first vertex of a node as the file counts them, from 1; 0 for a node that is not in it.
     pub fn obj_vertex(&self, node: u32) -> usize {
         self.vertex(node).map_or(0, |vertex| vertex + 1)

@@ -11,6 +11,7 @@ use crate::job::JobId;
 use crate::job::point::Point;
 use crate::platform::error::Error;
 use crate::platform::files::disk_error;
+use crate::platform::quote;
 use crate::store::journal::{Journal, Record};
 use crate::store::results::Results;
 use crate::store::stored::{self, Stored};
@@ -111,7 +112,7 @@ pub fn examine(results: &Results<'_>) -> Health {
         }
         health.findings.sort_by_key(|finding| !finding.fault);
     }
-    let root = crate::platform::quote::path(results.root());
+    let root = quote::path(results.root());
     for finding in &mut health.findings {
         let repair = format!("`billow doctor --repair {root}`");
         finding.next = finding.next.replace("`billow doctor --repair`", &repair);
@@ -191,7 +192,7 @@ fn check_checkpoints(results: &Results<'_>, health: &mut Health) {
 
 fn check_study(results: &Results<'_>, health: &mut Health) -> Option<Study> {
     let path = results.study_path();
-    let root = crate::platform::quote::path(results.root());
+    let root = quote::path(results.root());
     let next = format!(
         "run `billow doctor --repair {root}`, or `billow run STUDY --results {root}` with the study file: it \
          writes the file again"

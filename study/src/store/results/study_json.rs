@@ -12,6 +12,7 @@ use super::Results;
 use crate::input::json::Json;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{self, disk_error};
+use crate::platform::quote;
 use crate::store::journal::Journal;
 use crate::study::{JOB_LIMITS, Study, UNITS};
 
@@ -68,7 +69,7 @@ impl Results<'_> {
             State::Missing => Ok(None),
             State::Valid(owner) => Ok(Some(owner)),
             State::Damaged(problem) => {
-                let root = crate::platform::quote::path(self.root());
+                let root = quote::path(self.root());
                 Err(Error::Disk {
                     path: self.study_path(),
                     problem: format!(

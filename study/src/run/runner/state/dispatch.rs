@@ -9,6 +9,7 @@ use super::State;
 use crate::job::Job;
 use crate::platform::error::{Error, Result};
 use crate::platform::memory::limits;
+use crate::platform::quote;
 use crate::run::event::{Event, Reporter};
 use crate::run::reservation::Reservations;
 use crate::run::runner::quarantine;
@@ -32,7 +33,7 @@ impl State<'_, '_> {
     ) -> Result<()> {
         let quarantined: Vec<Job> =
             missing.extract_if(.., |job| self.deaths.is_quarantined(&job.id)).collect();
-        let root = crate::platform::quote::path(self.run.results.root());
+        let root = quote::path(self.run.results.root());
         let Some(note) = quarantine::quarantine_note(quarantined.iter(), self.run.label, &root)
         else {
             return Ok(());
