@@ -18,11 +18,11 @@
 //! | [`chart`] | charts of stored results |
 //! | [`render`] | pictures: SVG and PNG |
 //! | [`analysis`] | comparisons, statistics, the answer of a study |
-//! | [`scene`] | one scene without a study: its file, its run, its summary |
 //! | [`cluster`] | gives the jobs of a study to a cluster |
 //! | [`run`] | runs jobs in parallel |
 //! | [`store`] | what a study stores on disk |
 //! | [`study`] | a study: axes, points, jobs |
+//! | [`scene`] | one scene without a study: its file, its run, its summary |
 //! | [`accuracy`] | what is known about the error of a result |
 //! | [`job`] | one job: its id, its row |
 //! | [`input`] | keys, units, expressions, the JSON of a file |

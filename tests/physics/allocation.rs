@@ -15,7 +15,7 @@ fn the_counter_counts_allocations() {
 #[test]
 fn a_step_without_contact_allocates_nothing() {
     let mut scene = paper_scene();
-    scene.design.subdivisions = 2;
+    scene.design.folded_mut().unwrap().subdivisions = 2;
     scene.gas.leak_area = 1e-4;
     let mut run = FilmRun::from_scene(InstructionSet::detect(), &scene, DEFAULT_CFL, None).unwrap();
     let inflow =

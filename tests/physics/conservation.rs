@@ -34,7 +34,7 @@ fn scenes() -> impl Strategy<Value = Scene> {
     let rest = (0.0..0.1_f64, prop_oneof![Just(0.0), -10.0..0.0_f64]);
     (designs(), film, gas, rest).prop_map(|(design, film, gas, rest)| {
         let mut scene = paper_scene();
-        scene.design = design;
+        scene.design = design.into();
         scene.film.youngs_modulus = film.0;
         scene.film.thickness = film.1;
         scene.film.temperature = film.2;
@@ -63,7 +63,7 @@ fn energy_balances_in_hard_starts_and_bounces() {
     barely.gas.windows = vec![window(0.0, 0.005, 1.09e-4)];
     barely.gas.heat_transfer = HeatTransfer::Coefficient(6.17);
     let mut bounces = paper_scene();
-    bounces.design = crate::geometry::paper_height(4);
+    bounces.design = crate::geometry::paper_height(4).into();
     bounces.film.youngs_modulus = 4.78e9;
     bounces.film.thickness = 9.575e-5;
     bounces.gas.initial_mass = 5.844e-5;

@@ -18,9 +18,9 @@ fn scenes(subdivisions: u32) -> [Scene; 2] {
         alpha1_over_phi: Some(1.0),
         chirality: Chirality::Alternate,
         stowed_height: 0.06,
-        ..paper.design.clone()
+        ..paper.design.folded().unwrap().clone()
     };
-    [paper.clone(), Scene { design, ..paper }]
+    [paper.clone(), Scene { design: design.into(), ..paper }]
 }
 
 /// The stowed capsule of a scene with contact.
@@ -53,13 +53,13 @@ fn the_default_contact_distance_is_the_same_on_every_mesh() {
         film.contact = Some(FilmContact::default());
         let film = capsule::start(&film, &[]).unwrap();
         let expected = film.view().system.contact.as_ref().unwrap().distance;
-        let gap = reference_gap(&fine.design).unwrap();
+        let gap = reference_gap(fine.design.folded().unwrap()).unwrap();
         assert!((expected - 0.4 * gap).abs() < 1e-9 * gap, "{expected} {gap}");
         let [first, rest @ ..] = [3, 5, 8, 12].map(|n| contact_distance(&scenes(n)[index]));
         assert!((first - 0.4 * gap).abs() < 1e-15, "{first} {gap}");
         assert!(rest.iter().all(|distance| (distance - first).abs() < 1e-15), "{rest:?}");
     }
-    let paper = reference_gap(&scenes(3)[0].design).unwrap();
+    let paper = reference_gap(scenes(3)[0].design.folded().unwrap()).unwrap();
     assert!((paper - 0.791_899_699e-3).abs() < 2.5e-12, "{paper}");
 }
 
@@ -67,7 +67,7 @@ fn the_default_contact_distance_is_the_same_on_every_mesh() {
 fn the_imperfection_is_the_same_on_every_mesh() {
     for index in [0, 1] {
         let scene = |n: u32| Scene { seed: 3, ..scenes(n)[index].clone() };
-        let amplitude = 0.2 * reference_gap(&scene(8).design).unwrap();
+        let amplitude = 0.2 * reference_gap(scene(8).design.folded().unwrap()).unwrap();
         let largest =
             imperfection(&scene(8)).iter().fold(0.0_f64, |most, (_, x)| most.max(x.abs()));
         assert!((largest - amplitude).abs() < 1e-15, "{largest} {amplitude}");
@@ -105,7 +105,8 @@ fn a_given_distance_and_a_given_amplitude_are_used() {
 #[test]
 fn an_erected_capsule_has_the_contact_distance_of_its_design() {
     let scene = Scene { seed: 1, ..scenes(4)[0].clone() };
-    let contact = capsule::resolved_contact(FilmContact::default(), &scene.design).unwrap();
+    let contact =
+        capsule::resolved_contact(FilmContact::default(), scene.design.folded().unwrap()).unwrap();
     assert_eq!(contact.distance, Some(contact_distance(&scene)));
     let erected = |seed: u64| {
         let scene = Scene { seed, ..scene.clone() };

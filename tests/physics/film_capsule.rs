@@ -20,7 +20,7 @@ fn static_states_rise_with_pressure() {
         for pair in states.windows(2) {
             assert!(pair[1].volume < pair[0].volume, "{pair:?}");
         }
-        assert!(states.iter().all(|s| s.volume > 0.5 && s.volume < 0.7 && s.z_rim > 0.8));
+        assert!(states.iter().all(|s| s.volume > 0.5 && s.volume < 0.7 && s.height > 0.8));
     }
 }
 

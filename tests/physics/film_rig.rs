@@ -19,7 +19,7 @@ pub const INFLOW: Phase = Phase {
 
 /// The film of a capsule's scene in its stowed shape.
 pub fn stowed(instruction_set: InstructionSet, scene: &Scene, cfl: f64) -> FilmScene {
-    let shape = Shape::Stowed(scene.design.stowed_height);
+    let shape = Shape::Stowed(scene.design.folded().unwrap().stowed_height);
     capsule::film_scene(instruction_set, scene, shape, cfl).expect("a foldable design").0
 }
 

@@ -18,7 +18,7 @@ fn injected() -> Scene {
 #[test]
 fn the_moving_mass_matches_the_closed_form_of_the_cone() {
     let run = PistonRun::from_scene(&paper_scene()).unwrap();
-    let pattern = solved(&paper_scene().design);
+    let pattern = solved(paper_scene().design.folded().unwrap());
     let (r2, r1) = (0.5, 0.365);
     let share = (r2 / 3.0 + (r1 - r2) / 4.0) / (0.5 * (r1 + r2));
     let expected =
@@ -140,9 +140,10 @@ fn every_feasible_design_of_a_grid_deploys() {
         for storeys in [1, 2, 3, 4, 6] {
             for ratio in [0.6, 0.8, 1.0, 1.2] {
                 let mut scene = injected();
-                scene.design = FoldDesign { panels, ..paper_height(storeys) };
-                scene.design.alpha1_over_phi = Some(ratio);
-                if FoldPattern::new(&scene.design).is_err() {
+                let alpha1_over_phi = Some(ratio);
+                let design = FoldDesign { panels, alpha1_over_phi, ..paper_height(storeys) };
+                scene.design = design.into();
+                if scene.design.pattern().is_err() {
                     continue;
                 }
                 feasible += 1;

@@ -76,7 +76,7 @@ fn the_tangent_is_the_slope_of_the_forces_in_every_regime() {
 #[test]
 fn damped_motion_and_newton_find_the_same_equilibrium() {
     let mut scene = paper_scene();
-    scene.design.subdivisions = 3;
+    scene.design.folded_mut().unwrap().subdivisions = 3;
     let mut capsule = erected(InstructionSet::detect(), &scene).unwrap();
     let state = capsule.settle(100.0).unwrap();
     let nodes = capsule.model.nodes();
@@ -209,7 +209,7 @@ fn an_observer_can_stop_the_solution() {
 #[test]
 fn a_static_state_has_the_same_bits_on_every_instruction_set() {
     let mut scene = paper_scene();
-    scene.design.subdivisions = 2;
+    scene.design.folded_mut().unwrap().subdivisions = 2;
     let capsule = erected(InstructionSet::detect(), &scene).unwrap();
     let states = InstructionSet::ALL.map(|instruction_set| {
         let load = PressureLoad::Overpressure(1000.0);

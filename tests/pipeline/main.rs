@@ -14,6 +14,7 @@ mod frames;
 mod keys;
 mod mangled_studies;
 mod memory;
+mod mesh_study;
 mod monitor_and_blind_contact;
 #[path = "../torture/mutate.rs"]
 mod mutate;

@@ -235,7 +235,7 @@ fn overrides_come_before_expansion() {
     // One value in place of an axis; one value as an axis; a list as an axis.
     let generation = plan(&study, &["N=7"]);
     assert_eq!(generation.points.len(), 1);
-    assert_eq!(generation.points[0].job.scene.design.panels, 7);
+    assert_eq!(generation.points[0].job.scene.design.folded().unwrap().panels, 7);
     assert_eq!(column(&plan(&study, &["grid.N=7"]), "N"), integers(&[7]));
     let generation = plan(&study, &["M=[2, 4]", "N=7"]);
     assert_eq!(column(&generation, "M"), integers(&[2, 4]));

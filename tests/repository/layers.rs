@@ -34,7 +34,7 @@ const ROOMS: [(&str, &[&str]); 3] = [
     (
         "study",
         &[
-            "platform", "input", "job", "accuracy", "study", "store", "run", "cluster", "scene",
+            "platform", "input", "job", "accuracy", "scene", "study", "store", "run", "cluster",
             "analysis", "print", "render", "chart", "cli",
         ],
     ),

@@ -5,6 +5,7 @@ pub mod field;
 pub mod fold;
 pub mod mesh;
 pub mod mesh_io;
+pub mod refinement;
 pub mod shapes;
 pub mod shell;
 pub mod topology;

@@ -124,26 +124,12 @@ impl Shell {
 
     /// Boundary loops, each in the direction of a closing face along it; empty for a closed shell.
     pub fn boundary(&self) -> Vec<Vec<u32>> {
-        let mut directed_edges = std::collections::BTreeSet::new();
-        for &[a, b, c] in self.faces() {
-            directed_edges.extend([[a, b], [b, c], [c, a]]);
-        }
-        // The face on the other side of an edge contains it in the opposite direction.
-        let mut next: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        let free = |edge: &&[u32; 2]| !directed_edges.contains(&[edge[1], edge[0]]);
-        for &[a, b] in directed_edges.iter().filter(free) {
-            next.entry(b).or_default().push(a);
-        }
-        let mut loops = Vec::new();
-        while let Some((&first, _)) = next.iter().find(|(_, to)| !to.is_empty()) {
-            let (mut nodes, mut node) = (Vec::new(), first);
-            while let Some(to) = next.get_mut(&node).and_then(Vec::pop) {
-                nodes.push(node);
-                node = to;
-            }
-            loops.push(nodes);
-        }
-        loops
+        loops(self.faces())
+    }
+
+    /// Loops of edges with film on one side only, whether or not a closing face is on the other.
+    pub fn rims(&self) -> Vec<Vec<u32>> {
+        loops(self.triangles.iter())
     }
 
     /// Whether film and closing faces enclose a volume.
@@ -223,6 +209,30 @@ impl Shell {
         };
         (faces + self.fans().iter().map(fan).sum::<f64>()) / 6.0
     }
+}
+
+/// Loops of edges with a face on one side only, against the direction of its faces.
+fn loops<'a>(faces: impl Iterator<Item = &'a [u32; 3]>) -> Vec<Vec<u32>> {
+    let mut directed_edges = std::collections::BTreeSet::new();
+    for &[a, b, c] in faces {
+        directed_edges.extend([[a, b], [b, c], [c, a]]);
+    }
+    // The face on the other side of an edge contains it in the opposite direction.
+    let mut next: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    let free = |edge: &&[u32; 2]| !directed_edges.contains(&[edge[1], edge[0]]);
+    for &[a, b] in directed_edges.iter().filter(free) {
+        next.entry(b).or_default().push(a);
+    }
+    let mut loops = Vec::new();
+    while let Some((&first, _)) = next.iter().find(|(_, to)| !to.is_empty()) {
+        let (mut nodes, mut node) = (Vec::new(), first);
+        while let Some(to) = next.get_mut(&node).and_then(Vec::pop) {
+            nodes.push(node);
+            node = to;
+        }
+        loops.push(nodes);
+    }
+    loops
 }
 
 /// Flat coordinates of a triangle with its first edge along x.

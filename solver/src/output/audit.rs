@@ -1,7 +1,7 @@
 //! The audit: how far a result can be trusted. Energy, gas, film through film.
 
 use crate::output::history::History;
-use crate::output::measures::first_rebound;
+use crate::output::measures::{first_rebound, peak};
 
 /// Upper bound of the energy ledger residual, a fraction of the energy moved. A run with a larger one at
 /// any sample fails as `energy_drift`. Chosen.
@@ -25,8 +25,8 @@ pub struct Audit {
     /// Energy lost in the film's material over the work of the gas, at the end; 0 where the gas did no
     /// positive work.
     pub material_loss_fraction: f64,
-    /// Numerical dissipation over the work of the gas, both until the first peak of `z_rim`, or until the
-    /// end where there is none; 0 where the gas did no positive work.
+    /// Numerical dissipation over the work of the gas, both until the first peak of `z_rim` (of film without rings: of the
+    /// kinetic energy), or until the end where there is none; 0 where the gas did no positive work.
     pub numerical_fraction: f64,
     /// Passages of film through film counted over the whole run; `None` if the model does not count them.
     pub passages: Option<u64>,
@@ -53,7 +53,11 @@ impl Audit {
             if gas_work > 0.0 { at(name) / gas_work } else { 0.0 }
         };
         let end = history.len().checked_sub(1);
-        let (first_peak, _) = first_rebound(history.column("z_rim"));
+        let first_peak = if history.has_rings() {
+            first_rebound(history.column("z_rim")).0
+        } else {
+            peak(history.column("kinetic_energy")).map(|(index, _)| index)
+        };
         // Histories store counts as f64; all are whole numbers below 2^53.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts")]
         let count = |name: &str| counts_passages.then(|| largest(name) as u64);
@@ -125,6 +129,15 @@ mod tests {
         assert_eq!(series(0.2).numerical_fraction, 0.05);
         assert!(!series(0.2).numerically_damped() && series(0.21).numerically_damped());
         assert!(series(-0.21).numerically_damped() && series(f64::NAN).numerically_damped());
+        // Of film without rings until the largest kinetic energy.
+        let moving = |time: f64, kinetic: f64, numerical_dissipation: f64| {
+            let ledger =
+                Ledger { kinetic, gas_work: 4.0, numerical_dissipation, ..Ledger::default() };
+            Sample { time, ledger, ..Sample::default() }
+        };
+        let samples = [moving(0.0, 0.0, 0.0), moving(0.1, 2.0, 0.1), moving(0.2, 1.0, 3.0)];
+        let free = Audit::of(&History::of(&samples).without_rings(), false);
+        assert_eq!(free.numerical_fraction, 0.025);
         let rising = Audit::of(&History::of(&[start, at(0.1, 0.9, 0.4, 4.0)]), false);
         assert_eq!(rising.numerical_fraction, 0.1);
         assert!(rising.numerically_damped());

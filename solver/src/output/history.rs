@@ -16,6 +16,9 @@ pub struct Sample {
     pub z_rim: f64,
     /// Largest height of any node, m.
     pub z_max: f64,
+    /// Height of the whole film, from its lowest to its highest node, m.
+    #[serde(default)]
+    pub height: f64,
     /// Mean velocity of the top ring along z, m/s.
     pub vz: f64,
     /// Enclosed volume, m³.
@@ -44,12 +47,15 @@ pub struct Sample {
 pub struct History {
     /// Columns in the order of [`COLUMNS`].
     columns: Vec<Vec<f64>>,
-    /// Whether [`RING_COLUMNS`] are filled.
+    /// Whether [`RING_COLUMNS`] are filled, and [`HEIGHT`] is not.
     rings: bool,
 }
 
 /// Columns that only a capsule has: film without rings leaves them out.
-pub const RING_COLUMNS: [&str; 4] = ["z_centre", "z_rim", "vz", "support_impulse"];
+pub const RING_COLUMNS: [&str; 3] = ["z_centre", "z_rim", "vz"];
+
+/// The column that only film without rings has.
+pub const HEIGHT: &str = "height";
 
 /// A further time series beside [`COLUMNS`], at the same times: for example the position of a node or the
 /// membrane force of an element.
@@ -92,6 +98,7 @@ columns! {
     "z_centre" ["m"] "height of the top centre node", |s| s.z_centre;
     "z_rim" ["m"] "mean height of the top ring", |s| s.z_rim;
     "z_max" ["m"] "largest height of any node", |s| s.z_max;
+    "height" ["m"] "height of the whole film, from its lowest to its highest node", |s| s.height;
     "vz" ["m/s"] "mean velocity of the top ring along z", |s| s.vz;
     "volume" ["m3"] "enclosed volume", |s| s.volume;
     "pressure" ["Pa"] "gas pressure", |s| s.pressure;
@@ -148,6 +155,16 @@ impl History {
         self
     }
 
+    /// Whether it is that of a capsule.
+    pub fn has_rings(&self) -> bool {
+        self.rings
+    }
+
+    /// Whether it has a column.
+    pub fn has(&self, name: &str) -> bool {
+        if self.rings { name != HEIGHT } else { !RING_COLUMNS.contains(&name) }
+    }
+
     /// The history of a series of samples. Both residuals use the whole series.
     pub fn of(samples: &[Sample]) -> Self {
         let ledgers: Vec<Ledger> = samples.iter().map(|sample| sample.ledger).collect();
@@ -200,6 +217,6 @@ impl History {
     /// Columns with their names, in stored order.
     pub fn iter(&self) -> impl Iterator<Item = (&'static HistoryColumn, &[f64])> {
         let all = COLUMNS.iter().zip(self.columns.iter().map(Vec::as_slice));
-        all.filter(|(column, _)| self.rings || !RING_COLUMNS.contains(&column.name))
+        all.filter(|(column, _)| self.has(column.name))
     }
 }

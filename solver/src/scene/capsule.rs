@@ -1,20 +1,20 @@
-//! The scene of a capsule: its film, gas, contact and supports, how it is solved, what is stored.
+//! The scene of a job: its film, gas, contact and supports, how it is solved, what is stored.
 
 use serde::{Deserialize, Serialize};
 
-use crate::geometry::fold::FoldDesign;
+use super::Design;
 
-/// Everything one run of a capsule needs.
+/// Everything one run needs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
-    /// The fold design as requested; [`crate::geometry::fold::FoldPattern::new`] solves it.
-    pub design: FoldDesign,
+    /// A folded capsule, as requested ([`crate::geometry::fold::FoldPattern::new`] solves it), or film from a mesh.
+    pub design: Design,
     /// Material of the film.
     pub film: Film,
     /// The gas that deploys the capsule.
     pub gas: GasSupply,
-    /// Supports of the film.
+    /// Supports of a capsule. Those of film from a mesh belong to its nodes ([`super::MeshFilm`]).
     pub supports: Vec<Support>,
     /// Contact of film with film.
     pub contact: Contact,
@@ -30,7 +30,7 @@ pub struct Scene {
     /// Seed of the imperfection of the stowed shape. A model without imperfection ignores it.
     pub seed: u64,
     /// Amplitude of this imperfection, m; `None` for the default of the design
-    /// ([`crate::models::film::reference_gap`]).
+    /// ([`crate::models::film::reference_gap`]) or of the mesh ([`super::MeshFilm::default_amplitude`]).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub imperfection_amplitude: Option<f64>,
 }

@@ -4,6 +4,7 @@
 //! changes job ids, and data without influence on results does not belong in a [`Scene`].
 
 mod capsule;
+mod design;
 pub mod error;
 pub mod film_scene;
 pub mod film_support;
@@ -20,3 +21,4 @@ pub use capsule::{
     MAX_SAMPLES, ModelKind, Outputs, Scene, Solver, Species, Stepping, Support, SupportLocation,
     Thresholds, Vent,
 };
+pub use design::{Design, MeshDesign, MeshFilm};

@@ -111,7 +111,7 @@ pub fn design(subdivisions: u32) -> FoldDesign {
 /// `piston`, sampled every 0.5 ms, a heat transfer coefficient of 0.3 W/(m² K).
 pub fn empty_capsule(subdivisions: u32, end_time: f64) -> Scene {
     Scene {
-        design: design(subdivisions),
+        design: design(subdivisions).into(),
         film: Film::PAPER,
         gas: GasSupply { heat_transfer: HeatTransfer::Coefficient(0.3), ..nitrogen_supply() },
         supports: vec![Support { on: SupportLocation::BottomRing, fix: "xyz".to_owned() }],

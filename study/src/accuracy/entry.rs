@@ -92,7 +92,9 @@ impl Method {
     /// The method of a single run.
     pub fn of(scene: &Scene) -> Self {
         let meshes = match scene.solver.model {
-            ModelKind::Film => vec![scene.design.subdivisions],
+            ModelKind::Film => {
+                scene.design.folded().map_or(Vec::new(), |design| vec![design.subdivisions])
+            }
             ModelKind::Piston | ModelKind::Storeys => Vec::new(),
         };
         Self { model: scene.solver.model, meshes }

@@ -71,9 +71,9 @@ pub struct Features {
 }
 
 impl Features {
-    /// The features of a scene. `top_radius` and `height` (m) are those of its solved pattern.
-    pub fn of(scene: &Scene, top_radius: f64, height: f64) -> Self {
-        let (design, film, gas) = (&scene.design, &scene.film, &scene.gas);
+    /// The features of a scene. `top_radius` and `height` (m) are those of its solved pattern. `None` of film from a mesh.
+    pub fn of(scene: &Scene, top_radius: f64, height: f64) -> Option<Self> {
+        let (design, film, gas) = (scene.design.folded().ok()?, &scene.film, &scene.gas);
         let radius = design.bottom_radius;
         let slant = libm::hypot(height, radius - top_radius);
         let area = PI * ((radius + top_radius) * slant + radius * radius + top_radius * top_radius);
@@ -104,7 +104,7 @@ impl Features {
         let stop = if stop >= scene.solver.end_time { f64::INFINITY } else { stop };
         let duration = if first.is_some() { stop - inflow } else { 0.0 };
         let long = |time: f64| (time / gas_time).min(LONG);
-        Self {
+        Some(Self {
             values: [
                 f64::from(design.panels),
                 f64::from(design.storeys),
@@ -119,7 +119,7 @@ impl Features {
                 long(duration),
                 temperature / film.temperature,
             ],
-        }
+        })
     }
 }
 
@@ -202,7 +202,7 @@ impl Coverage {
 /// A scene without its features and without what changes no error.
 fn without_features(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
-    let design = &mut scene.design;
+    let Ok(design) = scene.design.folded_mut() else { return scene };
     design.fit = Fit::Cone;
     design.panels = 0;
     design.storeys = 0;

@@ -29,13 +29,12 @@ impl RowErrors {
         if cells.status() != Status::Done {
             return Self::NONE;
         }
-        let [Some(top_radius), Some(height)] =
-            [ColumnId::TopRadius, ColumnId::Height].map(|column| cells.number(column))
-        else {
-            return Self::NONE;
-        };
         let table = MeshErrors::shipped();
-        let features = Features::of(scene, top_radius, height);
+        let dimensions = [ColumnId::TopRadius, ColumnId::Height].map(|column| cells.number(column));
+        let features = match dimensions {
+            [Some(top_radius), Some(height)] => Features::of(scene, top_radius, height),
+            _ => None,
+        };
         let method = Method::of(scene);
         let assumed = |features: &Features| {
             PROMISED.map(|promised| {
@@ -44,13 +43,18 @@ impl RowErrors {
                 Some(sides.map(|side| side * value.abs()))
             })
         };
-        if let Some(gap) = table.gap(scene, &features) {
+        let gap = match &features {
+            Some(features) => table.gap(scene, features),
+            None => scene.design.folded().is_err().then(|| OF_CAPSULES.to_owned()),
+        };
+        if let Some(gap) = gap {
             // What is assumed changes other scenes too: as much as in the middle of the table.
             let middle = Features { values: table.coordinates.base };
             let film = method.model == ModelKind::Film;
             let assumed = if film { assumed(&middle) } else { Self::NONE.assumed };
             return Self { reason: Some(gap), assumed, ..Self::NONE };
         }
+        let Some(features) = features else { return Self::NONE };
         if method.model != ModelKind::Film {
             let known = PROMISED.map(|promised| table.error(&method, &features, &promised));
             let reason = match known.iter().find_map(|error| error.as_ref().ok()) {
@@ -138,6 +142,10 @@ fn of_another_model(method: &Method) -> String {
     )
 }
 
+/// Why film from a mesh has no error.
+pub const OF_CAPSULES: &str =
+    "film from a mesh: the table of mesh errors has folded capsules alone";
+
 /// Why the state at the end of some runs has no error.
 const NOT_DEPLOYED: &str = "not deployed: final_z_rim and final_volume have a mesh error only where the capsule is deployed";
 
@@ -175,7 +183,7 @@ mod tests {
     /// The errors of a row of the paper's capsule, computed by a model.
     fn of_row(model: ModelKind, stepping: Stepping) -> RowErrors {
         let mut scene = crate::accuracy::tests::covered();
-        scene.design.subdivisions = 4;
+        scene.design.folded_mut().unwrap().subdivisions = 4;
         scene.solver.model = model;
         scene.solver.stepping = stepping;
         let mut cells = Cells::new(Status::Done);

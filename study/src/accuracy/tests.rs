@@ -20,7 +20,7 @@ fn scene() -> Scene {
 }
 
 fn features(scene: &Scene) -> Features {
-    Features::of(scene, 0.365, 1.0)
+    Features::of(scene, 0.365, 1.0).unwrap()
 }
 
 fn value(features: &Features, name: &str) -> f64 {
@@ -88,12 +88,13 @@ fn equal_physics_of_another_size_has_equal_features() {
     let mut small = scene();
     small.gas.windows = vec![window(0.0, 0.3, 5e-3)];
     let mut large = small.clone();
-    large.design.bottom_radius *= 2.0;
-    large.design.stowed_height *= 2.0;
+    large.design.folded_mut().unwrap().bottom_radius *= 2.0;
+    large.design.folded_mut().unwrap().stowed_height *= 2.0;
     // Twice the length at equal speeds takes twice the time; the film is four times as heavy.
     large.gas.windows = vec![window(0.0, 0.6, 1e-2)];
     large.solver.end_time = 0.6;
-    let [small, large] = [features(&small), Features::of(&large, 0.73, 2.0)].map(|of| of.values);
+    let [small, large] =
+        [features(&small), Features::of(&large, 0.73, 2.0).unwrap()].map(|of| of.values);
     for (name, (small, large)) in features::FEATURE_NAMES.iter().zip(small.iter().zip(large)) {
         assert!((small - large).abs() <= 1e-9 * small.abs(), "{name}: {small} {large}");
     }
@@ -106,7 +107,7 @@ fn a_scene_unlike_the_runs_is_not_covered_and_the_reason_names_its_key() {
     let gap = |scene: &Scene| coverage.gap(scene, &features(scene));
     assert_eq!(gap(&base), None);
     let mut other = base.clone();
-    other.design.subdivisions = 16;
+    other.design.folded_mut().unwrap().subdivisions = 16;
     other.seed = 7;
     other.outputs.frames = 5;
     assert_eq!(gap(&other), None, "mesh, seed and outputs are no part of it");
@@ -128,7 +129,7 @@ fn a_scene_unlike_the_runs_is_not_covered_and_the_reason_names_its_key() {
     );
     assert!(reason(|scene| scene.contact.friction = 0.3).starts_with("contact.friction 0.3"));
     assert!(reason(|scene| scene.gravity = -9.8).starts_with("gravity -9.8"));
-    assert!(reason(|scene| scene.design.panels = 9).starts_with("N 9: "));
+    assert!(reason(|scene| scene.design.folded_mut().unwrap().panels = 9).starts_with("N 9: "));
 }
 
 #[test]
@@ -203,7 +204,7 @@ fn a_feature_changes_the_bias_and_deviations_make_the_error_wider() {
     let promised = promise("t_90_z_rim").unwrap();
     let method = Method { model: ModelKind::Film, meshes: vec![4] };
     let mut two_storeys = scene();
-    two_storeys.design.storeys = 2;
+    two_storeys.design.folded_mut().unwrap().storeys = 2;
     let of = |table: &MeshErrors, scene: &Scene| {
         table.error(&method, &features(scene), promised).unwrap()
     };

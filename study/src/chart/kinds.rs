@@ -11,15 +11,17 @@ use super::{Source, borders, history, invalid_option, map, number, over};
 use crate::analysis::compare::{canonical, values};
 use crate::input::value::Value;
 use crate::job::JobId;
-use crate::job::row::DerivedColumn;
+use crate::job::row::{ColumnId, DerivedColumn};
 use crate::platform::error::Result;
 use crate::store::history_file::StoredHistory;
 use crate::store::table::Column;
 
 /// Quantities over time.
 const HISTORIES: [&str; 3] = ["z_rim", "vz", "pressure"];
+/// Those of film without rings.
+const OTHER_HISTORIES: [&str; 3] = ["volume", "height", "pressure"];
 /// Measures over the first parameter.
-const MEASURES: [&str; 3] = ["t_90_z_rim", "peak_vz", "peak_kinetic_energy"];
+const MEASURES: [ColumnId; 3] = [ColumnId::T90ZRim, ColumnId::PeakVz, ColumnId::PeakKineticEnergy];
 /// Most points whose histories are drawn together. Chosen: more lines hide each other.
 const MAX_HISTORIES: usize = 8;
 
@@ -137,7 +139,7 @@ pub fn standard<'a>(source: &Source<'a>) -> (Vec<(ChartKind, Source<'a>)>, Vec<S
             }
         }
     }
-    let mut measures = MEASURES.to_vec();
+    let mut measures = MEASURES.map(|id| source.table.of_any_film(id).name()).to_vec();
     if asks {
         let limited = source.limits.iter().map(|limit| limit.measure.name());
         let limited = limited.filter(|name| *name != Judged::Deployed.name());
@@ -174,7 +176,9 @@ pub fn standard<'a>(source: &Source<'a>) -> (Vec<(ChartKind, Source<'a>)>, Vec<S
     notes.extend(note);
     if let Some(chosen) = chosen {
         let kind = |column: &str| ChartKind::History(vec![column.to_owned()]);
-        charts.extend(HISTORIES.map(|column| (kind(column), chosen.clone())));
+        let rings = source.table.of_any_film(ColumnId::FinalZRim) == ColumnId::FinalZRim;
+        let columns = if rings { HISTORIES } else { OTHER_HISTORIES };
+        charts.extend(columns.map(|column| (kind(column), chosen.clone())));
     }
     (charts, notes)
 }

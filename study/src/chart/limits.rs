@@ -33,7 +33,8 @@ pub struct Bound {
 
 /// Measures that are extremes of a history column of another name, and the signs with which a limit of them is one of
 /// the column.
-const SERIES: [(ColumnId, &str, &[f64]); 9] = [
+const SERIES: [(ColumnId, &str, &[f64]); 10] = [
+    (ColumnId::LargestHeight, "height", &[1.0]),
     (ColumnId::PeakVz, "vz", &[1.0]),
     (ColumnId::PeakDownwardVz, "vz", &[-1.0]),
     (ColumnId::PeakSpeed, "vz", &[1.0, -1.0]),

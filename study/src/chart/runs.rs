@@ -87,7 +87,7 @@ impl<'a> Source<'a> {
             return String::new();
         };
         let on_meshes = match runs.meshes {
-            Meshes { list, of_pilots: false } if !list.is_empty() => {
+            Meshes { list, of_pilots: false, .. } if !list.is_empty() => {
                 format!(" on n {}", meshes_text(list))
             }
             _ => String::new(),
@@ -154,7 +154,7 @@ impl<'a> Source<'a> {
                 "Points with runs on n {} (pilots, nearest to a limit) show these alone.",
                 meshes_text(&meshes.list)
             )
-        } else if extrapolated {
+        } else if extrapolated && !meshes.of_file {
             format!(
                 "Values are extrapolated from n {second} and {finest}; outcomes are those on n {finest}."
             )

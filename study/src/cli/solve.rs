@@ -141,8 +141,8 @@ fn solve(args: &Args, scene: &SceneFile) -> Result<Solved> {
         if !args.quiet.quiet && last.elapsed() >= PROGRESS_INTERVAL {
             last = Instant::now();
             eprintln!(
-                "billow: t {:.6} of {} s, z_centre {:.4} m, pressure {:.1} Pa",
-                progress.time, progress.end_time, progress.z_centre, progress.pressure
+                "billow: t {:.6} of {} s, height {:.4} m, pressure {:.1} Pa",
+                progress.time, progress.end_time, progress.height, progress.pressure
             );
         }
     })

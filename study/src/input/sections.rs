@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::input::json::Json;
-use crate::input::keys::{KEYS, STRATEGY_KEYS, STUDY, Table, WINDOW_KEYS, position};
+use crate::input::keys::{KEYS, Key, STRATEGY_KEYS, STUDY, Table, WINDOW_KEYS, position};
 use crate::input::object::object;
 use crate::input::overrides::member;
 use crate::input::plausible::Implausible;
@@ -25,7 +25,10 @@ impl Settings {
         let mut settings = Self::new(&STUDY);
         settings.read("", tree, source)?;
         settings.check_stepping(tree, source)?;
-        settings.supports = supports::read(tree.get("supports"), source)?;
+        // Supports of a mesh need its nodes.
+        if !has_mesh(tree) {
+            settings.supports = supports::read(tree.get("supports"), source)?;
+        }
         if let Some(json) = tree.get("strategies") {
             for (name, value) in object(json, &STUDY, "strategies", source)? {
                 settings.add_strategy(name, strategy::read(name, value, source)?);
@@ -100,7 +103,12 @@ impl Settings {
     /// Writes the default of every key that the tree does not give into it.
     pub fn write_defaults(&self, tree: &mut Json) {
         let values = self.table.keys.iter().zip(&self.values);
-        for (key, value) in values.filter(|(_, value)| **value != Value::Null) {
+        let is_other = |key: &Key| {
+            has_mesh(tree) && key.path.starts_with("design.") && key.path != "design.subdivisions"
+        };
+        let values: Vec<_> =
+            values.filter(|(key, value)| **value != Value::Null && !is_other(key)).collect();
+        for (key, value) in values {
             let parts = || key.path.split('.');
             if parts().try_fold(&*tree, Json::get).is_none()
                 && let Some(member) = parts().try_fold(&mut *tree, member)
@@ -109,6 +117,11 @@ impl Settings {
             }
         }
     }
+}
+
+/// Whether a study has film from a mesh.
+pub(crate) fn has_mesh(tree: &Json) -> bool {
+    tree.get("design").and_then(|design| design.get("mesh")).is_some()
 }
 
 /// A gas given by its constants has both.

@@ -2,11 +2,12 @@
 //! `sections` reads them from the tree of the file.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use billow_solver::geometry::fold::{Caps, FoldDesign};
 use billow_solver::scene::{
-    Contact, Creases, Film, GasSupply, HeatTransfer, InflowWindow, IntegratorKind, Species,
-    Support, Vent,
+    Contact, Creases, Design, Film, GasSupply, HeatTransfer, InflowWindow, IntegratorKind,
+    MeshDesign, Species, Support, Vent,
 };
 
 use crate::input::json::Json;
@@ -41,6 +42,8 @@ pub(crate) struct Settings {
     pub strategies: BTreeMap<String, Strategy>,
     /// What holds the capsule of a study.
     pub supports: Vec<Support>,
+    /// The film of a study with a mesh in place of a fold design, by the subdivisions of its triangles; else empty.
+    pub meshes: Arc<BTreeMap<u32, MeshDesign>>,
 }
 
 /// Overpressure at which a vent is fully open over that at which it begins to open, by default. Chosen: that of common
@@ -52,7 +55,7 @@ impl Settings {
     pub fn new(table: &'static Table) -> Self {
         let values = table.keys.iter().map(|key| key.default_value()).collect();
         let (rows, strategies, supports) = (Vec::new(), BTreeMap::new(), Vec::new());
-        Self { table, values, rows, strategies, supports }
+        Self { table, values, rows, strategies, supports, meshes: Arc::default() }
     }
 
     /// The value of a key, by its position in the table.
@@ -197,11 +200,29 @@ impl Settings {
         self.picked(path, words).ok_or_else(|| self.missing(path, source))
     }
 
+    /// The film: that of a mesh, or the fold design.
+    pub fn design(&self, source: &Source) -> Result<Design, InputError> {
+        if self.meshes.is_empty() {
+            return self.fold_design(source).map(Design::Capsule);
+        }
+        let mesh = self.meshes.get(&self.count("design.subdivisions", source)?);
+        mesh.map(|mesh| Design::Mesh(mesh.clone()))
+            .ok_or_else(|| self.missing("design.subdivisions", source))
+    }
+
+    /// A design on a mesh with these subdivisions; as it is where film from a mesh has no such mesh.
+    pub fn on_mesh(&self, design: &Design, n: u32) -> Design {
+        match design {
+            Design::Capsule(design) => FoldDesign { subdivisions: n, ..design.clone() }.into(),
+            Design::Mesh(mesh) => Design::Mesh(self.meshes.get(&n).unwrap_or(mesh).clone()),
+        }
+    }
+
     /// The fold design.
     ///
     /// # Errors
     /// When the file does not give a key that it must give, as in all of these.
-    pub fn design(&self, source: &Source) -> Result<FoldDesign, InputError> {
+    pub fn fold_design(&self, source: &Source) -> Result<FoldDesign, InputError> {
         Ok(FoldDesign {
             fit: self.word("design.fit", &FITS, source)?,
             panels: self.count("design.N", source)?,

@@ -5,9 +5,9 @@
 //! mass of the air that moves over that of film   ρ_a λ A/(π m)          λ = ∛V, length of the motion
 //! ```
 //! Source: a plate whose motion has the wavelength λ carries ρ λ/(2 π) of fluid on each side (H. Lamb, "Hydrodynamics",
-//! 1932, §228); here it is air on both sides, as long as the gas inside is as dense.
+//! 1932, 228); here it is air on both sides, as long as the gas inside is as dense.
 
-use billow_solver::scene::{Film, GasSupply, Scene};
+use billow_solver::scene::{Design, Film, GasSupply, Scene};
 
 use super::point::Solved;
 use crate::input::value::brief_number;
@@ -39,12 +39,14 @@ impl Surroundings {
         Self { lift, moved_mass }
     }
 
-    /// Those of an erected capsule, a cone with flat ends.
-    pub fn of_capsule(scene: &Scene, solved: &Solved) -> Self {
-        let (r, top, h) = (scene.design.bottom_radius, solved.top_radius, solved.height);
-        let side = libm::sqrt(h * h + (r - top) * (r - top));
-        let area = core::f64::consts::PI * ((r + top) * side + r * r + top * top);
-        Self::new(&scene.film, &scene.gas, [area, solved.erected_volume], scene.gravity != 0.0)
+    /// Those of an erected capsule, a cone with flat ends, or of other film, with the volume of a sphere of its area, which
+    /// is the largest. `None` for a capsule without a pattern.
+    pub fn of_scene(scene: &Scene, solved: Option<&Solved>) -> Option<Self> {
+        let (area, volume) = match &scene.design {
+            Design::Capsule(design) => of_cone(design.bottom_radius, solved?),
+            Design::Mesh(design) => of_sphere(design.film.shell.reference_area()),
+        };
+        Some(Self::new(&scene.film, &scene.gas, [area, volume], scene.gravity != 0.0))
     }
 
     /// Why these scenes are not computed.
@@ -82,9 +84,21 @@ impl Surroundings {
     }
 }
 
+/// Area (m²) and volume (m³) of an erected capsule with this bottom radius, m.
+fn of_cone(r: f64, solved: &Solved) -> (f64, f64) {
+    let (top, h) = (solved.top_radius, solved.height);
+    let side = libm::sqrt(h * h + (r - top) * (r - top));
+    let area = core::f64::consts::PI * ((r + top) * side + r * r + top * top);
+    (area, solved.erected_volume)
+}
+
+/// Area (m²) and volume (m³) of a sphere of this area.
+pub fn of_sphere(area: f64) -> (f64, f64) {
+    (area, area * libm::sqrt(area) / (6.0 * libm::sqrt(core::f64::consts::PI)))
+}
+
 #[cfg(test)]
 mod tests {
-    use billow_solver::geometry::fold::FoldPattern;
     use billow_solver::scene::paper;
 
     use super::*;
@@ -92,7 +106,7 @@ mod tests {
     #[test]
     fn what_air_does_is_noted_or_refused_by_its_size() {
         let mut scene = paper::empty_capsule(1, 1.0);
-        let solved = Solved::of(&FoldPattern::new(&scene.design).unwrap());
+        let solved = Solved::of(&scene.design.pattern().unwrap());
         // Ambient pressure, gravity, gas constant of the gas: lift and moved mass, over the film's.
         for (pressure, gravity, gas, lift, moved, refused, notes) in [
             (0.0, 0.0, 296.8, 0.0, 0.0, false, 0),
@@ -109,7 +123,7 @@ mod tests {
             scene.gas.ambient_pressure = pressure;
             scene.gravity = gravity;
             scene.gas.species.gas_constant = gas;
-            let found = Surroundings::of_capsule(&scene, &solved);
+            let found = Surroundings::of_scene(&scene, Some(&solved)).unwrap();
             assert!((found.lift - lift).abs() <= 0.05 * lift, "{found:?}");
             assert!((found.moved_mass - moved).abs() <= 0.05 * moved, "{found:?}");
             assert_eq!(found.refusal().is_some(), refused, "{found:?}");

@@ -3,6 +3,7 @@
 pub mod error;
 pub mod exit_code;
 pub mod files;
+pub mod hash;
 pub mod memory;
 pub mod nearest;
 pub mod output;

@@ -3,11 +3,13 @@
 
 use std::fmt::Write as _;
 
+use crate::accuracy::row::OF_CAPSULES;
 use crate::accuracy::{MeshErrors, NO_ERROR_REASON, is_of_pilots, is_unknown};
 use crate::analysis::replicates::is_mesh;
 use crate::input::value::Value;
 use crate::print::count;
 use crate::store::table::Table;
+use crate::store::table::extrapolated::INDEX_FACTORS;
 use crate::study::{Meshes, meshes_text};
 
 /// What a row of points holds: runs that differ in `replicates`, on the meshes of the study (coarsest first; none where
@@ -29,14 +31,24 @@ pub fn points(
         let _ = write!(text, " that differ in {}: {of_each}", names.join(", "));
     }
     if meshes.of_pilots {
+        let (all, finest) = (meshes_text(&meshes.list), meshes.list.last().unwrap_or(&1));
+        let values = if meshes.of_file {
+            format!("the values of n {finest}, with an error from n {all}")
+        } else {
+            format!("values extrapolated from n {all}")
+        };
         let _ = write!(
             text,
-            "; the points nearest to a limit have values extrapolated from n {} (pilots), once these have run",
-            meshes_text(&meshes.list)
+            "; the points nearest to a limit have {values} (pilots), once these have run"
         );
     }
     if let Some((finest, coarser)) = on_all.split_last() {
         let [others @ .., next] = coarser else { return text };
+        if meshes.of_file {
+            let all = meshes_text(&meshes.list);
+            let _ = write!(text, "; values are those of n {finest}, with an error from n {all}");
+            return text;
+        }
         let _ = write!(
             text,
             "; the measures with a mesh error and the times since the release are extrapolated from n {next} and {finest} (that of \
@@ -49,8 +61,14 @@ pub fn points(
     text
 }
 
-/// What gives an error where the table of mesh errors has none.
-pub const THREE_MESHES: &str = "\"solver\": {\"meshes\": [4, 6, 8]} gives one";
+/// What a study gives to run each point on three meshes; `from_mesh`: of film from a mesh.
+pub fn three_meshes(from_mesh: bool) -> &'static str {
+    if from_mesh {
+        "\"solver\": {\"meshes\": [1, 2, 3]}"
+    } else {
+        "\"solver\": {\"meshes\": [4, 6, 8]}"
+    }
+}
 
 /// The uncertainty that a table shows.
 pub const UNCERTAINTY: &str = "mesh error and what is assumed; limits count both; parts: <measure>_error_below, \
@@ -83,9 +101,15 @@ pub fn mesh_errors(shown: Option<&str>, table: &Table, meshes: &Meshes) -> Vec<S
     }
     let Some(gap) = gaps.first() else { return notes };
     let on_all = if meshes.of_pilots { 0 } else { meshes.list.len() };
+    let from_mesh = *gap == OF_CAPSULES;
+    let three = three_meshes(from_mesh);
     notes.push(match on_all {
-        0 => format!("rows without − and + have no known error (no_error_reason): {gap}; {THREE_MESHES}"),
-        2 => format!("rows that the table does not cover (no_error_reason) have no error; {THREE_MESHES}"),
+        2.. if from_mesh => format!(
+            "− and + are {} times the largest change from mesh to mesh, taken to the limit as 1/n (grid convergence index)",
+            INDEX_FACTORS[usize::from(on_all > 2)]
+        ),
+        0 => format!("rows without − and + have no known error (no_error_reason): {gap}; {three} gives one"),
+        2 => format!("rows that the table does not cover (no_error_reason) have no error; {three} gives one"),
         _ => "rows that the table does not cover (no_error_reason): − and + are 3 times the change of the extrapolated value \
               from the two coarsest meshes to the two finest, or the error in the middle of the table where that is larger"
             .to_owned(),

@@ -6,8 +6,8 @@ use std::collections::BTreeSet;
 use billow_solver::integrators::{self, Refusal};
 use billow_solver::scene::{Film, ModelKind, Scene};
 
-use super::legend::THREE_MESHES;
-use crate::accuracy::row::has_error;
+use super::legend::three_meshes;
+use crate::accuracy::row::{OF_CAPSULES, has_error};
 use crate::accuracy::{Features, MeshErrors, Method, PROMISED, choice};
 use crate::input::keys::numerical::{MESH_PARAMETER, SEED};
 use crate::input::keys::{MODELS, Model};
@@ -146,9 +146,16 @@ fn without_error(study: &Study) -> Option<String> {
     };
     let meshes = study.meshes();
     let points = study.points().iter().filter(|_| meshes.list.is_empty() || meshes.of_pilots);
-    let mut points = points.filter_map(features).peekable();
+    let mut points = points.peekable();
     points.peek()?;
-    let Some(gap) = points.find_map(gap) else {
+    let found = if study.has_mesh() {
+        Some(OF_CAPSULES.to_owned())
+    } else {
+        let mut points = points.filter_map(features).peekable();
+        points.peek()?;
+        points.find_map(gap)
+    };
+    let Some(gap) = found else {
         return Some("mesh error: known at each point, from the table of mesh errors".to_owned());
     };
     let known = format!("note: the mesh error of some points is not known ({gap})");
@@ -162,7 +169,7 @@ fn without_error(study: &Study) -> Option<String> {
         [] => "",
         _ => "; no limit is met for certain there",
     };
-    Some(format!("{known}{limits}; {THREE_MESHES}"))
+    Some(format!("{known}{limits}; {} gives one", three_meshes(study.has_mesh())))
 }
 
 /// Limits on measures of which no error is known, whatever the scene.
@@ -195,11 +202,12 @@ fn below_ambient(study: &Study) -> Option<String> {
     })
 }
 
-/// What the air around the capsules does that no model has, at the point where it does most.
+/// What the air around the film does that no model has, at the point where it does most.
 fn air_outside(study: &Study) -> Vec<String> {
-    let outside = study.points().iter().filter_map(|point| {
-        Some(Surroundings::of_capsule(&point.job.scene, point.solved.as_ref()?))
-    });
+    let outside = study
+        .points()
+        .iter()
+        .filter_map(|point| Surroundings::of_scene(&point.job.scene, point.solved.as_ref()));
     let most =
         outside.fold(Surroundings { lift: 0.0, moved_mass: 0.0 }, |most, one| Surroundings {
             lift: most.lift.max(one.lift),

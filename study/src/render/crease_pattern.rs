@@ -274,7 +274,7 @@ mod tests {
 
     #[test]
     fn the_pattern_is_drawn_one_to_one_in_millimetres() {
-        let pattern = FoldPattern::new(&paper::empty_capsule(1, 1.0).design).unwrap();
+        let pattern = paper::empty_capsule(1, 1.0).design.pattern().unwrap();
         let plain = svg(&pattern, None);
         let count = |name: &str| layer(&plain, name).len();
         assert_eq!((count("cut"), count("mountain")), (2 * 6 + 2 * 3 + 2, 2 * 6 + 3 * 5));

@@ -34,8 +34,7 @@ use crate::study::plan::Generation;
 
 /// A job whose seed is `number`.
 pub fn job(number: u32) -> Job {
-    let id =
-        JobId::from_digits(&crate::store::history_file::bytes_hash(&number.to_le_bytes())[..32]);
+    let id = JobId::from_digits(&crate::platform::hash::bytes_hash(&number.to_le_bytes())[..32]);
     Job {
         id: id.unwrap(),
         parameters: vec![
@@ -61,6 +60,10 @@ pub fn deployment(number: u32, samples: usize) -> Deployment {
                 2.0 + libm::sin(f64::from(number) + 0.1 * column as f64 + 0.01 * sample as f64);
         }
         values[0] = 0.001 * sample as f64;
+        for (column, value) in COLUMNS.iter().zip(&mut values) {
+            // What a capsule has not is read back as 0.
+            *value = if history.has(column.name) { *value } else { 0.0 };
+        }
         history.push(&values);
     }
     let last = |name: &str| history.column(name).last().copied();
@@ -199,7 +202,7 @@ pub fn ran(number: u32) -> Outcome {
 impl<S: Fn(u32) -> Outcome + Sync> Executor for Scripted<S> {
     fn execute(&self, task: &Task<'_>) -> Outcome {
         self.executed.fetch_add(1, Ordering::SeqCst);
-        let progress = Progress { time: 0.5, end_time: 1.0, z_centre: 0.3, pressure: 50.0 };
+        let progress = Progress { time: 0.5, end_time: 1.0, height: 0.3, pressure: 50.0 };
         task.control.progress(progress);
         if task.control.order() == Order::End {
             return Outcome::Cancelled;

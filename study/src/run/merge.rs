@@ -7,9 +7,9 @@ use crate::job::JobId;
 use crate::job::row::ColumnId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::disk_error;
+use crate::platform::hash::bytes_hash;
 use crate::platform::stop::Stop;
 use crate::run::exclusive::{self, Exclusive};
-use crate::store::history_file;
 use crate::store::journal::{Journal, Record, Writer};
 use crate::store::results::Results;
 use crate::store::stored::Stored;
@@ -117,7 +117,7 @@ fn copied(source: &Results<'_>, target: &Results<'_>, record: &Record) -> Result
     let Some(hash) = &record.file_hash else { return Ok(Some(record.clone())) };
     let path = source.job_path(&record.job);
     let bytes = match source.files().read(&path) {
-        Ok(bytes) if history_file::bytes_hash(&bytes) == *hash => bytes,
+        Ok(bytes) if bytes_hash(&bytes) == *hash => bytes,
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
             return Err(disk_error(&path, &error));
         }

@@ -48,7 +48,7 @@ pub fn report(scene: &SceneFile) -> Json {
         "volume": shell.volume(|node| shell.positions[node as usize]),
         "edge_length": edge_lengths(shell),
         "pieces": pieces(shell).iter().map(of_piece).collect::<Vec<_>>(),
-        "free_edges": loops.iter().map(of_loop).collect::<Vec<_>>(),
+        "free_edges": shell.rims().iter().map(of_loop).collect::<Vec<_>>(),
         "notes": scene.notes,
     });
     if let Ok(model) = FilmModel::of_shell(&scene.film.film.elastic(), shell) {

@@ -1,7 +1,6 @@
 //! What decides the numbers of a study and is no result of it, from the values of its points.
 
-use billow_solver::geometry::fold::FoldDesign;
-use billow_solver::scene::{HeatTransfer, Scene};
+use billow_solver::scene::{Design, HeatTransfer, Scene};
 
 use super::ground::{pressure_at_release, stowed_volume};
 use crate::accuracy::{AssumedRanges, assumed_value};
@@ -68,14 +67,16 @@ fn ranges_text(value: &str, ranges: &AssumedRanges, index: usize) -> String {
 
 /// Height and volume of the stowed stacks, and the pressure in them at the release where gas is inside before it.
 fn stacks(scenes: &[&Scene]) -> Vec<String> {
-    let heights = scenes.iter().map(|scene| 1e3 * scene.design.stowed_height);
-    let Some(height) = range_text(heights, short_number) else { return Vec::new() };
-    let mut volumes: Vec<(&FoldDesign, f64)> = Vec::new();
+    let folded = scenes.iter().filter_map(|scene| scene.design.folded().ok());
+    let heights = folded.map(|design| 1e3 * design.stowed_height);
+    let height = range_text(heights, short_number);
+    let start = height.map_or("mesh".to_owned(), |height| format!("stack {height} mm high"));
+    let mut volumes: Vec<(&Design, f64)> = Vec::new();
     let mut pressures = Vec::new();
     for scene in scenes {
         let known = volumes.iter().rev().find(|(design, _)| **design == scene.design);
         let volume = match known.map(|(_, volume)| *volume) {
-            None if volumes.len() == MAX_DESIGNS => return vec![format!("stack {height} mm high")],
+            None if volumes.len() == MAX_DESIGNS => return vec![start],
             None => {
                 let Some(volume) = stowed_volume(&scene.design) else { continue };
                 volumes.push((&scene.design, volume));
@@ -87,7 +88,7 @@ fn stacks(scenes: &[&Scene]) -> Vec<String> {
     }
     let litres = volumes.iter().map(|(_, volume)| 1e3 * volume);
     let volume = range_text(litres, brief_number).map(|volume| format!(", {volume} litres"));
-    let mut texts = vec![format!("stack {height} mm high{}", volume.unwrap_or_default())];
+    let mut texts = vec![format!("{start}{}", volume.unwrap_or_default())];
     let pressure = range_text(pressures, brief_number).filter(|pressure| pressure != "0");
     texts.extend(pressure.map(|pressure| format!("{pressure} Pa in it before the release")));
     texts

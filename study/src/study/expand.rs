@@ -201,19 +201,22 @@ impl<'a> Expansion<'a> {
         debug_assert_eq!(self.settings.supports, point.supports, "supports are not an axis");
         let design = point.design(self.source);
         let design = design.map_err(|error| self.at_point(point, error))?;
-        let fold = self.folds.entry(bits(&design));
-        let fold = Rc::clone(fold.or_insert_with(|| Rc::new(FoldPattern::new(&design))));
+        let fold = design.folded().ok().map(|design| {
+            let fold = self.folds.entry(bits(design));
+            Rc::clone(fold.or_insert_with(|| Rc::new(FoldPattern::new(design))))
+        });
         if let Some(filter) = filter
-            && !filter.holds(point, &fold)
+            && !filter.holds(point, fold.as_deref())
         {
             return Ok(false);
         }
-        let (infeasible, solved) = match &*fold {
-            Ok(pattern) => (None, Some(Solved::of(pattern))),
-            Err(FoldError::Infeasible { reason, nearest }) => {
+        let (infeasible, solved) = match fold.as_deref() {
+            None => (None, None),
+            Some(Ok(pattern)) => (None, Some(Solved::of(pattern))),
+            Some(Err(FoldError::Infeasible { reason, nearest })) => {
                 (Some(Infeasible { reason: reason.clone(), nearest: nearest.clone() }), None)
             }
-            Err(FoldError::Invalid { key, problem }) => {
+            Some(Err(FoldError::Invalid { key, problem })) => {
                 let error = self.invalid_design(point, key, problem);
                 return Err(self.at_point(point, error));
             }
@@ -224,7 +227,7 @@ impl<'a> Expansion<'a> {
                 Err(error) => Err(self.refused(&error)),
             })
             .map_err(|error| self.at_point(point, error))?;
-        let outside = solved.as_ref().map(|solved| Surroundings::of_capsule(&scene, solved));
+        let outside = Surroundings::of_scene(&scene, solved.as_ref());
         if let Some(problem) = outside.and_then(|outside| outside.refusal()) {
             let error =
                 self.source.error("gravity", shown(scene.gravity), problem, Surroundings::ALLOWED);

@@ -89,13 +89,15 @@ impl Filter {
         self.condition.text()
     }
 
-    /// Whether a point meets it.
-    pub fn holds(&self, point: &Settings, fold: &Fold) -> bool {
+    /// Whether a point meets it; without a fold for film from a mesh.
+    pub fn holds(&self, point: &Settings, fold: Option<&Fold>) -> bool {
         let value = |named: &Option<Named>| match (named, fold) {
-            (None, _) => Value::Null,
-            (Some(Named::Feasible), fold) => Value::Bool(fold.is_ok()),
-            (Some(Named::Solved(index)), Ok(pattern)) => Value::Number((SOLVED[*index].2)(pattern)),
-            (Some(Named::Solved(index)), Err(_)) => {
+            (None, _) | (Some(Named::Solved(_)), None) => Value::Null,
+            (Some(Named::Feasible), fold) => Value::Bool(fold.is_none_or(Result::is_ok)),
+            (Some(Named::Solved(index)), Some(Ok(pattern))) => {
+                Value::Number((SOLVED[*index].2)(pattern))
+            }
+            (Some(Named::Solved(index)), Some(Err(_))) => {
                 keys::find(SOLVED[*index].0).map_or(Value::Null, |key| point.at(key).clone())
             }
             (Some(Named::Value(index)), _) => point.at(*index).clone(),

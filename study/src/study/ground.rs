@@ -1,18 +1,25 @@
 //! Gas inside a stowed capsule under ambient pressure.
 
-use billow_solver::geometry::fold::{FoldDesign, FoldPattern};
+use billow_solver::geometry::fold::FoldPattern;
 use billow_solver::geometry::mesh::{Mesh, Shape};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::scene::inflow::Schedule;
-use billow_solver::scene::{GasSupply, Scene};
+use billow_solver::scene::{Design, GasSupply, Scene};
 
 use crate::input::settings::Settings;
 use crate::input::source::{Source, shown};
 use crate::platform::error::InputError;
 
-/// Volume of the stowed capsule of a design, m³: the same on every mesh, because facets are flat. `None` for
-/// a design without a pattern.
-pub(super) fn stowed_volume(design: &FoldDesign) -> Option<f64> {
+/// Volume of the stowed capsule of a design, m³: the same on every mesh, because facets are flat; of film from a mesh its
+/// volume at the start. `None` for a design without a pattern.
+pub(super) fn stowed_volume(design: &Design) -> Option<f64> {
+    let design = match design {
+        Design::Capsule(design) => design,
+        Design::Mesh(design) => {
+            let shell = &design.film.shell;
+            return Some(shell.volume(|node| shell.positions[node as usize]));
+        }
+    };
     let pattern = FoldPattern::new(design).ok()?;
     let shell = Shell::of_mesh(&Mesh::new(&pattern, 1, Shape::Stowed(design.stowed_height)).ok()?);
     Some(shell.volume(|node| shell.positions[node as usize]))
@@ -32,7 +39,7 @@ pub(super) fn pressure_at_release(scene: &Scene, stowed_volume: f64) -> f64 {
 
 /// Mass (kg) of gas that fills the stowed capsule at ambient pressure and film temperature.
 pub(super) fn mass_at_ambient_pressure(
-    design: &FoldDesign,
+    design: &Design,
     settings: &Settings,
     residual_mass: f64,
     source: &Source,

@@ -4,6 +4,9 @@
 //! The meshes are an axis that varies fastest, as replicates do. They must be meshes of the table of mesh errors,
 //! which has the weights of the extrapolation.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use billow_solver::scene::{ModelKind, Scene};
 
 use super::column::Column;
@@ -12,10 +15,13 @@ use crate::accuracy::{Features, MeshErrors};
 use crate::input::json::Json;
 use crate::input::keys::{self, KEYS, position, short_name};
 use crate::input::object::list;
+use crate::input::sections::has_mesh;
+use crate::input::settings::Settings;
 use crate::input::source::Source;
 use crate::input::value::Value;
 use crate::job::point::Point;
 use crate::platform::error::InputError;
+use crate::scene::file::design_mesh::{self, StudyMesh};
 
 /// The key, for errors.
 const MESHES: &str = "solver.meshes";
@@ -29,6 +35,8 @@ pub struct Meshes {
     pub list: Vec<u32>,
     /// Whether the pilots alone run on all of them.
     pub of_pilots: bool,
+    /// Whether they cut the triangles of a mesh file: values are then those of the finest.
+    pub of_file: bool,
 }
 
 /// "4 and 6", "4, 6 and 8".
@@ -47,7 +55,7 @@ impl Grid {
     ) -> Result<(), InputError> {
         let Some(json) = json else { return Ok(()) };
         let source = context.source;
-        let meshes = read_list(json, source)?;
+        let meshes = read_list(json, &known(context.settings), source)?;
         let refuse = |problem: &str| {
             source.error(MESHES, json, problem, "a study in which nothing else varies the mesh")
         };
@@ -68,32 +76,48 @@ impl Grid {
         Ok(())
     }
 
+    /// The values of the subdivisions on the grid.
+    pub(super) fn mesh_values(&self) -> Vec<u32> {
+        let of_axis = self.axes.iter().flat_map(|axis| {
+            let column = axis.columns.iter().position(|c| self.columns[*c].index == SUBDIVISIONS);
+            axis.rows.iter().filter_map(move |row| column.map(|column| &row[column]))
+        });
+        let single = self.points.iter().flatten();
+        let single = single.filter(|(column, _)| self.columns[*column].index == SUBDIVISIONS);
+        of_axis.chain(single.map(|(_, value)| value)).filter_map(whole).collect()
+    }
+
     /// The meshes of each point, coarsest first; empty where the study does not give them.
     pub(super) fn meshes(&self) -> Vec<u32> {
         let axes = self.axes.iter().filter(|axis| axis.kind == AxisKind::Meshes);
         let values = axes.flat_map(|axis| &axis.rows).flatten();
-        values
-            .filter_map(|value| match value {
-                Value::Integer(n) => u32::try_from(*n).ok(),
-                _ => None,
-            })
-            .collect()
+        values.filter_map(whole).collect()
     }
 }
 
-/// Reads a list of meshes of the table of mesh errors.
-fn read_list(json: &Json, source: &Source) -> Result<Vec<u32>, InputError> {
-    let known = MeshErrors::shipped().meshes();
+fn whole(value: &Value) -> Option<u32> {
+    match value {
+        Value::Integer(n) => u32::try_from(*n).ok(),
+        _ => None,
+    }
+}
+
+/// The meshes that a study may extrapolate from: those of the table of mesh errors; of film from a mesh any.
+pub(super) fn known(settings: &Settings) -> Vec<u32> {
+    if settings.meshes.is_empty() { MeshErrors::shipped().meshes() } else { (1..=8).collect() }
+}
+
+/// Reads a list of meshes that are known.
+fn read_list(json: &Json, known: &[u32], source: &Source) -> Result<Vec<u32>, InputError> {
     let names = known.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
     let allowed = format!("1 to 3 of {names}, the coarsest first, as in [4, 8]");
-    let whole = |item: &Json| match item {
+    let mesh = |item: &Json| match item {
         Json::Integer(n) => u32::try_from(*n).ok().filter(|n| known.contains(n)),
         _ => None,
     };
-    let meshes: Option<Vec<u32>> =
-        list(json, MESHES, source, &allowed)?.iter().map(whole).collect();
+    let meshes: Option<Vec<u32>> = list(json, MESHES, source, &allowed)?.iter().map(mesh).collect();
     let problem = match meshes {
-        None => "has a mesh that the table of mesh errors has not",
+        None => "has a mesh that is not known",
         Some(meshes) if matches!(meshes.len(), 1..=3) && meshes.is_sorted_by(|a, b| a < b) => {
             return Ok(meshes);
         }
@@ -102,10 +126,72 @@ fn read_list(json: &Json, source: &Source) -> Result<Vec<u32>, InputError> {
     Err(source.error(MESHES, json, problem, allowed))
 }
 
-/// The scene of a point with the features on which mesh errors depend; `None` for an infeasible point.
+/// The scene of a point with the features on which mesh errors depend; `None` for an infeasible point, and for film from a
+/// mesh.
 pub(crate) fn features(point: &Point) -> Option<(&Scene, Features)> {
     let (scene, solved) = (&*point.job.scene, point.solved?);
-    Some((scene, Features::of(scene, solved.top_radius, solved.height)))
+    Some((scene, Features::of(scene, solved.top_radius, solved.height)?))
+}
+
+/// Subdivisions of the mesh of a point.
+pub fn subdivisions(point: &Point) -> u32 {
+    point.job.scene.design.subdivisions()
+}
+
+/// Reads the film of a study with a mesh on the subdivisions of its file, by default 1, and puts the text of its
+/// surfaces into the study. Returns what a reader of its results must know.
+pub(super) fn read_first(
+    tree: &mut Json,
+    settings: &mut Settings,
+    source: &Source,
+) -> Result<Vec<String>, InputError> {
+    if !has_mesh(tree) {
+        return Ok(Vec::new());
+    }
+    if tree.get("design").and_then(|design| design.get("subdivisions")).is_none() {
+        settings.set(SUBDIVISIONS, Value::Integer(1));
+    }
+    let n = settings.count("design.subdivisions", source)?;
+    let Some(StudyMesh { design, stored, notes }) = design_mesh::read(tree, settings, n, source)?
+    else {
+        return Ok(Vec::new());
+    };
+    settings.meshes = Arc::new(BTreeMap::from([(n, design)]));
+    design_mesh::store(tree, stored);
+    Ok(notes)
+}
+
+/// Reads the film of a study with a mesh on further subdivisions.
+pub(super) fn read_others(
+    tree: &Json,
+    settings: &mut Settings,
+    meshes: &[u32],
+    source: &Source,
+) -> Result<(), InputError> {
+    for n in meshes {
+        if !settings.meshes.is_empty()
+            && !settings.meshes.contains_key(n)
+            && let Some(mesh) = design_mesh::read(tree, settings, *n, source)?
+        {
+            Arc::make_mut(&mut settings.meshes).insert(*n, mesh.design);
+        }
+    }
+    Ok(())
+}
+
+/// Refuses keys of the fold design on the grid of film from a mesh.
+pub(super) fn refuse_design_keys(
+    settings: &Settings,
+    grid: &Grid,
+    source: &Source,
+) -> Result<(), InputError> {
+    let is_of_design =
+        |column: &&Column| column.key.path.starts_with("design.") && column.index != SUBDIVISIONS;
+    let given = grid.columns.iter().find(is_of_design).filter(|_| !settings.meshes.is_empty());
+    let Some(column) = given else { return Ok(()) };
+    let problem = "belongs to the fold pattern, and design.mesh has none";
+    let allowed = "keys of film, gas, contact, strategies, …; a study for each mesh";
+    Err(source.error(&format!("grid.{}", column.name), "", problem, allowed))
 }
 
 /// Refuses models without a mesh: their runs on each would be equal.

@@ -36,6 +36,8 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
+use billow_solver::scene::Design;
+
 use crate::accuracy::AssumedRanges;
 use crate::input::json::Json;
 use crate::input::keys::STUDY;
@@ -54,7 +56,7 @@ use crate::platform::error::{InputError, Result as BillowResult};
 use finished::FinishedRow;
 use grid::{Context, Grid};
 pub(crate) use meshes::features;
-pub use meshes::{Meshes, meshes_text};
+pub use meshes::{Meshes, meshes_text, subdivisions};
 pub use parameters::{StudyKey, Zipped};
 pub use search::{Border, Criterion, Level, SearchResult};
 
@@ -162,19 +164,23 @@ impl Study {
             return Err(InputError { hint: format!("billow solve {file}"), ..error });
         }
         let mut notes = overrides::apply(&mut tree, sets, &STUDY, &mut source)?;
-        let settings = Settings::of_study(&tree, &source)?;
+        let mut settings = Settings::of_study(&tree, &source)?;
+        notes.extend(meshes::read_first(&mut tree, &mut settings, &source)?);
         let result_limits = result_limits::read(tree.get(LIMITS), &source)?;
         let assumed = assumed::read(tree.get("assumed"), &source)?;
         let context =
             Context { settings: &settings, limits: &result_limits, source: &source, max_points };
         let mut grid = Grid::read(&tree, context)?;
         grid.refuse_varied(&source)?;
+        meshes::refuse_design_keys(&settings, &grid, &source)?;
+        meshes::read_others(&tree, &mut settings, &grid.mesh_values(), &source)?;
         let units = units::read(&tree, &settings, &source)?;
         let (mut points, filtered) = expand::points(&settings, &grid, &source, max_points)?;
         meshes::refuse_other_models(&grid, &points, &source)?;
         notes.extend(parameters::alike(&points));
         let pilots = pilots::meshes(&settings, &grid, &result_limits, &points);
-        if pilots.is_some() {
+        if let Some(meshes) = &pilots {
+            meshes::read_others(&tree, &mut settings, meshes, &source)?;
             pilots::add_mesh(&settings, &mut grid, &mut points);
         }
         let name = study_name(&settings, stem, &source)?;
@@ -218,24 +224,35 @@ impl Study {
     pub fn meshes(&self) -> Meshes {
         let list = self.pilots.map_or_else(|| self.grid.meshes(), Vec::from);
         let list = if list.len() > 1 { list } else { Vec::new() };
-        Meshes { list, of_pilots: self.pilots.is_some() }
+        Meshes { list, of_pilots: self.pilots.is_some(), of_file: self.has_mesh() }
     }
 
     /// The runs of its pilots, once these planned points are finished; none where it needs no pilots.
     pub(crate) fn pilots(&self, planned: &[Point], finished: &[FinishedRow]) -> Vec<Point> {
         self.pilots.map_or_else(Vec::new, |meshes| {
-            pilots::points(&self.grid, &meshes, &self.result_limits, planned, finished)
+            let of = (&self.settings, &self.grid);
+            pilots::points(of, &meshes, &self.result_limits, planned, finished)
         })
+    }
+
+    /// Whether its film is that of a mesh.
+    pub fn has_mesh(&self) -> bool {
+        !self.settings.meshes.is_empty()
+    }
+
+    /// A design on a mesh with these subdivisions.
+    pub(crate) fn on_mesh(&self, design: &Design, n: u32) -> Design {
+        self.settings.on_mesh(design, n)
     }
 
     /// Whether a planned point is the run of a pilot on another mesh than that of the study.
     pub(crate) fn is_pilot(&self, point: &Point) -> bool {
-        self.mesh_of_pilots().is_some_and(|mesh| point.job.scene.design.subdivisions != mesh)
+        self.mesh_of_pilots().is_some_and(|mesh| subdivisions(point) != mesh)
     }
 
     /// The mesh of its points, where it has pilots.
     pub(crate) fn mesh_of_pilots(&self) -> Option<u32> {
-        self.pilots.map(|_| self.points[0].job.scene.design.subdivisions)
+        self.pilots.map(|_| subdivisions(&self.points[0]))
     }
 
     /// The most pilots that it can have, one for each run of a point.

@@ -17,7 +17,7 @@ use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use super::column::Column;
 use super::finished::FinishedRow;
 use super::grid::{Axis, AxisKind, Grid};
-use super::meshes::{SUBDIVISIONS, features};
+use super::meshes::{SUBDIVISIONS, features, known, subdivisions};
 use crate::accuracy::{Features, MeshErrors, promised};
 use crate::input::keys::{KEYS, short_name};
 use crate::input::settings::Settings;
@@ -48,9 +48,8 @@ pub(super) fn meshes(
     if !points.par_iter().any(is_outside) {
         return None;
     }
-    let table = MeshErrors::shipped();
     let Value::Integer(n) = settings.at(SUBDIVISIONS) else { return None };
-    let known = table.meshes();
+    let known = known(settings);
     let position = known.iter().position(|mesh| i64::from(*mesh) == *n)?;
     let first = position.min(known.len().checked_sub(MESHES)?);
     known[first..first + MESHES].try_into().ok()
@@ -65,7 +64,9 @@ fn needs_error(limit: &ResultLimit) -> bool {
 fn is_outside(point: &Point) -> bool {
     let has_gap =
         |(scene, values): (&Scene, Features)| MeshErrors::shipped().gap(scene, &values).is_some();
-    point.job.scene.solver.model == ModelKind::Film && features(point).is_some_and(has_gap)
+    let scene = &point.job.scene;
+    scene.solver.model == ModelKind::Film
+        && (scene.design.folded().is_err() || features(point).is_some_and(has_gap))
 }
 
 /// Adds the mesh to the parameters of a study with pilots: it distinguishes the rows of several meshes.
@@ -92,7 +93,7 @@ fn by_distance(a: &Judged, b: &Judged) -> Ordering {
 
 /// The runs of the pilots on their other meshes, once every run of the `planned` points has ended.
 pub(super) fn points(
-    grid: &Grid,
+    (settings, grid): (&Settings, &Grid),
     meshes: &[u32],
     limits: &[ResultLimit],
     planned: &[Point],
@@ -141,7 +142,7 @@ pub(super) fn points(
         let mesh = Value::Integer(i64::from(n));
         let parameters = |of: &Parameters| with_mesh(of, name, &mesh);
         let mut scene = (*point.job.scene).clone();
-        scene.design.subdivisions = n;
+        scene.design = settings.on_mesh(&scene.design, n);
         Point {
             job: Job {
                 id: JobId::of(&scene),
@@ -154,7 +155,7 @@ pub(super) fn points(
         }
     };
     let runs = chosen.iter().flat_map(|point| {
-        let others = meshes.iter().filter(|n| **n != point.job.scene.design.subdivisions);
+        let others = meshes.iter().filter(|n| **n != subdivisions(point));
         others.map(|n| on_mesh(point, *n))
     });
     runs.collect()

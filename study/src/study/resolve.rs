@@ -1,8 +1,7 @@
 //! From the settings of a point to its scene.
 
-use billow_solver::geometry::fold::FoldDesign;
 use billow_solver::scene::{
-    IntegratorKind, ModelKind, Outputs, Scene, Solver, Stepping, Thresholds,
+    Design, IntegratorKind, ModelKind, Outputs, Scene, Solver, Stepping, Thresholds,
 };
 
 use super::ground;
@@ -18,7 +17,7 @@ use crate::platform::error::InputError;
 /// The scene of a point: the values of its keys, completed by its strategy and its model.
 pub(super) fn scene(
     settings: &Settings,
-    design: FoldDesign,
+    design: Design,
     source: &Source,
 ) -> Result<Scene, InputError> {
     let film = settings.film(source)?;

@@ -11,7 +11,6 @@ use billow_checks::cases::shapes::gas_column;
 use billow_solver::geometry::shapes::tube;
 use billow_solver::models;
 use billow_solver::models::run::{self, Model};
-use billow_solver::output::history::COLUMNS;
 use billow_solver::output::outcome::{Deployment, Stop};
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::Creases;
@@ -32,7 +31,7 @@ fn hash(numbers: impl IntoIterator<Item = f64>) -> String {
 fn piston(scene: &Scene) -> String {
     let deployment = models::solve(InstructionSet::detect(), scene, &mut Unobserved)
         .expect("a scene that can be run");
-    let columns = COLUMNS.iter().map(|column| deployment.history.column(column.name));
+    let columns = deployment.history.iter().map(|(_, values)| values);
     hash(columns.flatten().copied())
 }
 
@@ -178,7 +177,7 @@ fn turned_tube() -> String {
 /// The hash of a run: history, tracks, frames, number of steps.
 fn whole(deployment: &Deployment) -> String {
     assert_eq!(deployment.stop, Stop::Done);
-    let columns = COLUMNS.iter().flat_map(|column| deployment.history.column(column.name));
+    let columns = deployment.history.iter().flat_map(|(_, values)| values);
     let tracks = deployment.tracks.iter().flat_map(|track| &track.values);
     let frames = deployment.frames.iter().flat_map(|frames| &frames.frames);
     let positions = frames.flat_map(|frame| frame.positions.iter().flatten());

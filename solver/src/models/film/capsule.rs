@@ -58,7 +58,8 @@ pub const LID: &str = "lid";
 /// Name of the plate below packed film.
 pub const BASE: &str = "base";
 
-/// The capsule of a scene in one of its shapes, without contact, at this CFL number; and its mesh.
+/// The capsule of a scene in one of its shapes, without contact, at this CFL number; and its mesh. Of film from a mesh:
+/// [`super::any_mesh`].
 pub fn film_scene(
     instruction_set: InstructionSet,
     scene: &Scene,
@@ -66,20 +67,34 @@ pub fn film_scene(
     cfl: f64,
 ) -> Result<(FilmScene, Mesh), SceneError> {
     scene.validate()?;
-    let pattern = FoldPattern::new(&scene.design)?;
-    let mut mesh = Mesh::new(&pattern, scene.design.subdivisions, shape)?;
+    let design = scene.design.folded()?;
+    let pattern = FoldPattern::new(design)?;
+    let mut mesh = Mesh::new(&pattern, design.subdivisions, shape)?;
     if matches!(shape, Shape::Stowed(_)) {
-        imperfect(&mut mesh, &scene.design, scene.seed, scene.imperfection_amplitude)?;
+        imperfect(&mut mesh, design, scene.seed, scene.imperfection_amplitude)?;
     }
-    let film = FilmScene {
-        shell: Shell::of_mesh(&mesh),
+    let supports = scene.supports.iter().map(|support| on_capsule(support, &mesh)).collect();
+    let film = assembled(instruction_set, scene, Shell::of_mesh(&mesh), supports, cfl);
+    Ok((film, mesh))
+}
+
+/// The film of a scene with this shape and these supports, without contact.
+pub(super) fn assembled(
+    instruction_set: InstructionSet,
+    scene: &Scene,
+    shell: Shell,
+    supports: Vec<FilmSupport>,
+    cfl: f64,
+) -> FilmScene {
+    FilmScene {
+        shell,
         velocities: Vec::new(),
         film: scene.film,
         filling: Filling::Gas {
             supply: scene.gas.clone(),
             initial_temperature: scene.film.temperature,
         },
-        supports: scene.supports.iter().map(|support| on_capsule(support, &mesh)).collect(),
+        supports,
         contact: None,
         gravity: Vector3::new(0.0, 0.0, scene.gravity),
         release_time: scene.release_time,
@@ -98,8 +113,7 @@ pub fn film_scene(
             elements: Vec::new(),
             frames: scene.outputs.frames,
         },
-    };
-    Ok((film, mesh))
+    }
 }
 
 fn on_capsule(support: &Support, mesh: &Mesh) -> FilmSupport {

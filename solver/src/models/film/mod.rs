@@ -16,7 +16,7 @@ use nalgebra::Vector3;
 
 use super::Cost;
 use crate::geometry::field::Field;
-use crate::geometry::mesh::{Mesh, Part, Pleat, Shape};
+use crate::geometry::mesh::{Mesh, Part, Pleat};
 use crate::integrators::{FilmSimulation, FilmView, StoredFilm};
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::damping;
@@ -34,6 +34,7 @@ use crate::scene::timeline::Phase;
 use crate::scene::{Scene, Stepping};
 use crate::system::PressureLoad;
 
+mod any_mesh;
 pub mod capsule;
 mod imperfection;
 mod ladder;
@@ -59,10 +60,9 @@ pub fn check(scene: &Scene) -> Result<(), SceneError> {
 /// Elements and steps of a run whose film is never quiescent. The steps are those of the film without
 /// gas; gas changes them little.
 pub fn cost(scene: &Scene) -> Result<Cost, SceneError> {
-    let stowed = Shape::Stowed(scene.design.stowed_height);
     // Nothing runs here, and every instruction set gives the same bits.
     let instruction_set = InstructionSet::detect();
-    let (film, _) = capsule::film_scene(instruction_set, scene, stowed, cfl_of(scene)?)?;
+    let (film, _) = solve::stowed(instruction_set, scene, cfl_of(scene)?, None)?;
     let model = FilmModel::of_shell(&film.film, &film.shell)
         .map_err(|error| SceneError::invalid("design", error))?;
     let factor = damping::stable_share(scene.film.numerical_damping);
@@ -174,8 +174,8 @@ impl FilmRun {
         Self { film, rings, nodes, elements, fans, temperature }
     }
 
-    /// The capsule of a scene, stowed, at time 0, with this contact. Contact without a distance has the
-    /// default one of the design.
+    /// The film of a scene at time 0, with this contact. Contact without a distance has the default one of the design
+    /// or of the mesh.
     pub fn from_scene(
         instruction_set: InstructionSet,
         scene: &Scene,
@@ -183,7 +183,7 @@ impl FilmRun {
         contact: Option<FilmContact>,
     ) -> Result<Self, SceneError> {
         let (film, rings) = solve::stowed(instruction_set, scene, cfl, contact)?;
-        Self::of(&film, Some(rings))
+        Self::of(&film, rings)
     }
 
     /// The film as it is now.
@@ -191,8 +191,8 @@ impl FilmRun {
         self.film.view()
     }
 
-    /// Force on the lid while packed, N.
-    fn lid_force(&self, rings: &Rings) -> f64 {
+    /// Force on the lid while packed, N; 0 of film without rings and without contact.
+    fn lid_force(&self) -> f64 {
         let film = self.view();
         if let Some(contact_model) = &film.system.contact {
             let plates = contact_model.plates.iter().zip(&film.state.contact.plates);
@@ -201,6 +201,7 @@ impl FilmRun {
                 .map(|(_, state)| state.force)
                 .sum();
         }
+        let Some(rings) = &self.rings else { return 0.0 };
         let lift: f64 = (0..film.system.model.nodes())
             .map(|node| film.force(node).z * film.state.positions.z[node])
             .sum();
@@ -225,12 +226,17 @@ impl FilmRun {
         }
     }
 
-    /// Largest z of any node with mass, m.
-    fn largest_height(&self) -> f64 {
+    /// Least and largest z of any node with mass, m.
+    fn heights(&self) -> [f64; 2] {
         let film = self.view();
-        let masses = film.system.model.mass.iter().zip(film.state.positions.z.iter());
-        masses.filter(|(mass, _)| **mass > 0.0).map(|(_, z)| *z).fold(f64::NEG_INFINITY, f64::max)
+        heights(&film.system.model, &film.state.positions)
     }
+}
+
+/// Least and largest z of any node with mass, m.
+fn heights(model: &FilmModel, positions: &Field) -> [f64; 2] {
+    let film = model.mass.iter().zip(positions.z.iter()).filter(|(mass, _)| **mass > 0.0);
+    film.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (_, z)| [low.min(*z), high.max(*z)])
 }
 
 /// Mean z of these nodes, m.
@@ -255,29 +261,28 @@ impl Model for FilmRun {
     fn sample(&self, phase: &Phase) -> Sample {
         let film = self.view();
         let positions = &film.state.positions;
-        let (mut sample, mut lid_force) = (Sample::default(), 0.0);
+        let [low, high] = self.heights();
+        let mut sample = Sample { z_max: high, height: high - low, ..Sample::default() };
         if let Some(rings) = &self.rings {
             let centre = rings.top_centre as usize;
             sample.z_centre = positions.z[centre];
             sample.z_rim = mean_z(positions, &rings.top_ring);
             sample.vz = mean_z(&film.state.velocities, &rings.top_ring);
-            let nodes = film.system.model.mass.iter().zip(film.state.velocities.z.iter());
-            let weight = film.system.gravity.z * film.state.time;
-            sample.support_impulse = nodes.map(|(mass, speed)| mass * (speed - weight)).sum();
-            lid_force = if phase.packed { self.lid_force(rings) } else { 0.0 };
         }
+        let nodes = film.system.model.mass.iter().zip(film.state.velocities.z.iter());
+        let weight = film.system.gravity.z * film.state.time;
         Sample {
             time: film.state.time,
             passages: self.passages(),
             intersections: film.intersections().unwrap_or(0),
-            z_max: self.largest_height(),
+            support_impulse: nodes.map(|(mass, speed)| mass * (speed - weight)).sum(),
             volume: self.volume(),
             pressure: film.state.pressure,
             temperature: match film.system.pressure_load {
                 PressureLoad::Gas(gas) => gas.temperature(film.state.gas),
                 PressureLoad::Overpressure(_) => self.temperature,
             },
-            lid_force,
+            lid_force: if phase.packed { self.lid_force() } else { 0.0 },
             ledger: film.ledger(),
             gas: film.gas_balance(),
             ..sample

@@ -1,6 +1,6 @@
-//! Runs of a capsule: from the start, or from a checkpoint.
+//! Runs of a scene: from the start, or from a checkpoint.
 
-use super::{FilmRun, Rings, capsule, cfl_of};
+use super::{FilmRun, Rings, any_mesh, capsule, cfl_of};
 use crate::geometry::mesh::Shape;
 use crate::integrators::StoredFilm;
 use crate::models::run::{Observer, Run};
@@ -8,10 +8,10 @@ use crate::models::{ResumeError, Stored};
 use crate::output::checkpoint::Checkpoint;
 use crate::output::outcome::Deployment;
 use crate::platform::simd::InstructionSet;
-use crate::scene::Scene;
 use crate::scene::error::SceneError;
 use crate::scene::film_scene::{FilmContact, FilmScene};
 use crate::scene::timeline::Timeline;
+use crate::scene::{Design, Scene};
 
 /// Runs a scene as film with this contact and CFL number.
 pub fn solve(
@@ -59,8 +59,8 @@ fn complete(
         return Ok(Deployment::cancelled());
     }
     let (mut model, run) = match checkpoint {
-        None => (FilmRun::of(&film, Some(rings))?, Run::default()),
-        Some(stored) => FilmRun::resume(&film, Some(rings), &[], stored)?,
+        None => (FilmRun::of(&film, rings)?, Run::default()),
+        Some(stored) => FilmRun::resume(&film, rings, &[], stored)?,
     };
     if !observer.prepares() {
         return Ok(Deployment::cancelled());
@@ -68,17 +68,27 @@ fn complete(
     Ok(run.complete(&mut model, &Timeline::new(scene), observer))
 }
 
-/// The stowed capsule of a scene, with this contact, as a film with rings. Contact without a distance has
-/// the default one of the design.
+/// The film of a scene as it starts, with this contact, and the rings of a capsule. Contact without a distance has the
+/// default one of the design or of the mesh.
 pub(super) fn stowed(
     instruction_set: InstructionSet,
     scene: &Scene,
     cfl: f64,
     contact: Option<FilmContact>,
-) -> Result<(FilmScene, Rings), SceneError> {
-    let height = scene.design.stowed_height;
-    let (film, mesh) = capsule::film_scene(instruction_set, scene, Shape::Stowed(height), cfl)?;
-    let resolved = |contact| capsule::resolved_contact(contact, &scene.design);
-    let film = FilmScene { contact: contact.map(resolved).transpose()?, ..film };
-    Ok((film, Rings::of(&mesh, height)))
+) -> Result<(FilmScene, Option<Rings>), SceneError> {
+    match &scene.design {
+        Design::Capsule(design) => {
+            let height = design.stowed_height;
+            let shape = Shape::Stowed(height);
+            let (film, mesh) = capsule::film_scene(instruction_set, scene, shape, cfl)?;
+            let resolved = |contact| capsule::resolved_contact(contact, design);
+            let film = FilmScene { contact: contact.map(resolved).transpose()?, ..film };
+            Ok((film, Some(Rings::of(&mesh, height))))
+        }
+        Design::Mesh(design) => {
+            let film = any_mesh::at_start(instruction_set, scene, &design.film, cfl)?;
+            let contact = contact.map(|contact| any_mesh::resolved_contact(contact, &design.film));
+            Ok((FilmScene { contact, ..film }, None))
+        }
+    }
 }

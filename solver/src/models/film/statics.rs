@@ -1,16 +1,16 @@
-//! Static equilibria of a capsule, from its erected shape.
+//! Static equilibria of a capsule, from its erected shape; of other film from its stress-free shape, where its mesh knows
+//! that, else from its start.
 //!
 //! The bottom ring starts on its erected circle and moves to the stowed polygon on which a run holds it,
-//! so both have the same supports. Pressures descend; each equilibrium starts from the previous one.
+//! so both have the same supports; held nodes of other film likewise. Pressures descend; each equilibrium starts from the previous one.
 //! Without gravity, so that a design has the same reference on the ground and in orbit. The film's
 //! compression fraction is 0. [`crate::statics::settle`] finds each equilibrium.
 
 use nalgebra::Vector3;
 
 use super::capsule::film_scene;
-use super::mean_z;
+use super::{any_mesh, heights, mean_z};
 use crate::geometry::field::Field;
-use crate::geometry::fold::FoldPattern;
 use crate::geometry::mesh::{Mesh, Shape};
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::membrane::strain_energy;
@@ -18,11 +18,11 @@ use crate::mechanics::forces::pressure::volume;
 use crate::mechanics::supports::{PrescribedNodes, Supports};
 use crate::platform::simd::InstructionSet;
 use crate::scene::error::SceneError;
-use crate::scene::film_scene::Filling;
+use crate::scene::film_scene::FilmScene;
 use crate::scene::motion::{Motion, Profile};
 use crate::scene::{
-    Contact, Film, GasSupply, HeatTransfer, IntegratorKind, Outputs, Scene, Solver, Stepping,
-    Thresholds,
+    Contact, Design, Film, GasSupply, HeatTransfer, IntegratorKind, Outputs, Scene, Solver,
+    Stepping, Thresholds,
 };
 use crate::statics::{Continues, StaticFailure, Tolerances, settle};
 use crate::system::{FilmSystem, PressureLoad};
@@ -34,8 +34,8 @@ pub struct StaticState {
     pub overpressure: f64,
     /// Enclosed volume V, m³.
     pub volume: f64,
-    /// Mean height of the top ring, m.
-    pub z_rim: f64,
+    /// Mean height of the top ring; of film without rings its whole height, m.
+    pub height: f64,
     /// Strain energy, J.
     pub strain_energy: f64,
     /// Newton steps taken.
@@ -55,31 +55,29 @@ pub struct Erected {
     pub supports: Supports,
     /// Positions of the nodes, m.
     pub positions: Field,
-    /// The mesh.
-    pub mesh: Mesh,
+    /// Nodes of the top ring of a capsule; empty of other film.
+    pub top_ring: Vec<u32>,
     /// Overpressure at which the positions are a static equilibrium, Pa; `None` before the first one.
     pub equilibrium_at: Option<f64>,
     /// Instruction set. Every one gives the same bits.
     pub instruction_set: InstructionSet,
 }
 
-/// The erected capsule of a scene. Its held nodes still have to move to their stowed positions.
+/// The erected capsule, or other film, of a scene. Its held nodes still have to move to their positions in a run.
 pub fn erected(instruction_set: InstructionSet, scene: &Scene) -> Result<Erected, SceneError> {
     scene.validate()?;
     let reference =
         Scene { film: Film { compression: 0.0, ..scene.film }, gravity: 0.0, ..scene.clone() };
-    let (mut capsule, mesh) = film_scene(instruction_set, &reference, Shape::Erected, 1.0)?;
-    capsule.filling = Filling::Pressure(0.0);
-    let model = FilmModel::of_shell(&capsule.film.elastic(), &capsule.shell)
-        .map_err(|error| SceneError::invalid("design", error))?;
+    let Beginning { film: capsule, top_ring, held_at } =
+        Beginning::of(instruction_set, &reference)?;
     let positions = Field::of(&capsule.shell.positions);
     let mut supports = Supports::new(&capsule.supports, &positions);
-    if !capsule.supports.is_empty() {
-        let pattern = FoldPattern::new(&scene.design)?;
-        let stowed = Shape::Stowed(scene.design.stowed_height);
-        let stowed = Mesh::new(&pattern, scene.design.subdivisions, stowed)?;
+    let elastic = capsule.film.elastic();
+    let model = FilmModel::supported(&elastic, &capsule.shell, |node| supports.hold_fully(node))
+        .map_err(|error| SceneError::invalid("design", error))?;
+    if let Some(held_at) = held_at.filter(|_| !capsule.supports.is_empty()) {
         let position = |node: &u32| positions.get(*node as usize);
-        let displacement = |node: &u32| stowed.positions[*node as usize] - position(node);
+        let displacement = |node: &u32| held_at[*node as usize] - position(node);
         supports.movers = capsule
             .supports
             .iter()
@@ -92,7 +90,37 @@ pub fn erected(instruction_set: InstructionSet, scene: &Scene) -> Result<Erected
             })
             .collect();
     }
-    Ok(Erected { model, supports, positions, mesh, equilibrium_at: None, instruction_set })
+    Ok(Erected { model, supports, positions, top_ring, equilibrium_at: None, instruction_set })
+}
+
+/// Where the search of equilibria begins.
+struct Beginning {
+    film: FilmScene,
+    /// Nodes of the top ring of a capsule.
+    top_ring: Vec<u32>,
+    /// Positions (m) on which a run holds its nodes, where they are others.
+    held_at: Option<Vec<Vector3<f64>>>,
+}
+
+impl Beginning {
+    /// That of a reference scene.
+    fn of(instruction_set: InstructionSet, scene: &Scene) -> Result<Self, SceneError> {
+        match &scene.design {
+            Design::Capsule(design) => {
+                let (film, mesh) = film_scene(instruction_set, scene, Shape::Erected, 1.0)?;
+                let stowed = Shape::Stowed(design.stowed_height);
+                let stowed = Mesh::new(&scene.design.pattern()?, design.subdivisions, stowed)?;
+                let held_at = Some(stowed.positions);
+                Ok(Self { film, top_ring: mesh.top_ring, held_at })
+            }
+            Design::Mesh(design) => {
+                let film = any_mesh::unstressed(instruction_set, scene, &design.film, 1.0)?;
+                let start = &design.film.shell.positions;
+                let held_at = design.film.unstressed.is_some().then(|| start.clone());
+                Ok(Self { film, top_ring: Vec::new(), held_at })
+            }
+        }
+    }
 }
 
 /// Tolerances of a capsule's equilibria. Chosen: volumes and heights err by less than 1e-6.
@@ -146,7 +174,12 @@ impl Erected {
         Ok(StaticState {
             overpressure,
             volume: volume(&self.model, &equilibrium.positions),
-            z_rim: mean_z(&equilibrium.positions, &self.mesh.top_ring),
+            height: if self.top_ring.is_empty() {
+                let [low, high] = heights(&self.model, &equilibrium.positions);
+                high - low
+            } else {
+                mean_z(&equilibrium.positions, &self.top_ring)
+            },
             strain_energy: strain_energy(&self.model, &equilibrium.positions),
             iterations: equilibrium.iterations,
             residual: equilibrium.residual,

@@ -39,7 +39,7 @@ pub(super) fn check_supports(scene: &Scene) -> Result<(), SceneError> {
 pub(super) fn build(scene: &Scene, pattern: &FoldPattern) -> Result<PistonRun, SceneError> {
     let film = &scene.film;
     let mass = MovingMass::new(pattern, film.area_density());
-    let stowed_height = scene.design.stowed_height;
+    let stowed_height = pattern.design.stowed_height;
     let stowed = (stowed_height, pattern.stowed_volume(stowed_height));
     let erected = (pattern.height, pattern.erected_volume());
     let stroke = Stroke::new(stowed, erected)

@@ -24,7 +24,6 @@
 //! twist, radial motion and the loss in opening folds. Read both as upper bounds. A piston deploys
 //! whenever it has enough gas, so its verdict says nothing of locking.
 
-use crate::geometry::fold::FoldPattern;
 use crate::models::run::{self, Observer};
 use crate::output::outcome::Deployment;
 use crate::scene::error::SceneError;
@@ -51,6 +50,7 @@ pub fn solve(scene: &Scene, observer: &mut dyn Observer) -> Result<Deployment, S
 /// Checks a scene, its stepping and its supports for this model.
 pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
     scene.validate()?;
+    scene.design.folded()?;
     if let Stepping::Stable(_) = scene.solver.stepping {
         let problem = "model `piston` has no stable step; allowed: adaptive or fixed stepping";
         return Err(SceneError::invalid("solver.cfl", problem));
@@ -62,7 +62,7 @@ impl PistonRun {
     /// The piston of a scene, stowed, at time 0.
     pub fn from_scene(scene: &Scene) -> Result<Self, SceneError> {
         check(scene)?;
-        let pattern = FoldPattern::new(&scene.design)?;
+        let pattern = scene.design.pattern()?;
         from_scene::build(scene, &pattern)
     }
 }

@@ -241,11 +241,11 @@ impl Run {
             values.extend(model.positions().map(|now| self.recent.speed(target, now)));
             self.samples.push(sample);
             self.tracks.push(values);
-            let height = if model.has_rings() { sample.z_centre } else { sample.z_max };
+            let height = if model.has_rings() { sample.z_centre } else { sample.height };
             let progress = Progress {
                 time: target,
                 end_time: timeline.end_time,
-                z_centre: height,
+                height,
                 pressure: sample.pressure,
             };
             if !observer.sample(progress) {
@@ -387,8 +387,8 @@ pub struct Progress {
     pub time: f64,
     /// Simulated time at the end, s.
     pub end_time: f64,
-    /// Height of the top centre, m; of the highest node if the film has no rings.
-    pub z_centre: f64,
+    /// Height of the top centre, m; of the whole film if it has no rings.
+    pub height: f64,
     /// Gas pressure, Pa.
     pub pressure: f64,
 }

@@ -30,7 +30,7 @@ pub(in crate::models) fn check(scene: &Scene) -> Result<(), SceneError> {
         let problem = "model `storeys` takes a fraction of its stable step; allowed: a CFL number";
         return Err(SceneError::invalid("solver.stepping", problem));
     }
-    if scene.design.caps != Caps::Polygon {
+    if scene.design.folded()?.caps != Caps::Polygon {
         let problem = "model `storeys` starts folded; allowed: polygon caps";
         return Err(SceneError::invalid("design.caps", problem));
     }
@@ -61,8 +61,8 @@ pub(super) fn build(
     let film = scene.film;
     let mut positions = rest::start(instruction_set, pattern, &film);
     let amplitude =
-        scene.imperfection_amplitude.unwrap_or(AMPLITUDE_FRACTION * scene.design.stowed_height);
-    perturb(&mut positions, amplitude / scene.design.stowed_height, scene.seed);
+        scene.imperfection_amplitude.unwrap_or(AMPLITUDE_FRACTION * pattern.design.stowed_height);
+    perturb(&mut positions, amplitude / pattern.design.stowed_height, scene.seed);
     let gas = Gas::new(&scene.gas, film.temperature, pattern.film_area());
     let state = gas.at_temperature(scene.gas.initial_mass, film.temperature);
     let cfl = match scene.solver.stepping {

@@ -17,7 +17,6 @@
 //! no friction, no adhesion, and film that falls back passes through film; no compression, so the model
 //! cannot lock. The loss of motion within a ring is a multiple of the film's ([`UNRESOLVED_LOSS`]).
 
-use crate::geometry::fold::FoldPattern;
 use crate::models::run::{self, Observer};
 use crate::output::outcome::Deployment;
 use crate::platform::simd::{InstructionSet, WIDTH};
@@ -55,7 +54,7 @@ impl StoreysRun {
     /// The storeys of a scene, stowed, at time 0.
     pub fn from_scene(instruction_set: InstructionSet, scene: &Scene) -> Result<Self, SceneError> {
         from_scene::check(scene)?;
-        let pattern = FoldPattern::new(&scene.design)?;
+        let pattern = scene.design.pattern()?;
         Ok(from_scene::build(instruction_set, scene, &pattern))
     }
 }

@@ -3,9 +3,10 @@
 //! Two static equilibria of the design serve as reference ([`Reference`]). Ratios, verdict, overshoot and
 //! `t_deployed` use the one at the **final overpressure** of the run. The other times use the **design
 //! shape**, which depends on the design alone. Times above one half use smoothed series (module `smoothed`).
+//! Film without rings has no measures of its top ring: its verdict and its times are those of its volume.
 //! Series are linear between samples.
 
-use crate::output::history::History;
+use crate::output::history::{HEIGHT, History};
 use crate::scene::timeline::Timeline;
 
 mod hold;
@@ -54,7 +55,8 @@ pub struct Measures {
     pub no_verdict: Option<NoReference>,
     /// Mean V of the last tenth divided by the static volume at the final overpressure.
     pub volume_ratio: Option<f64>,
-    /// Smallest `z_rim` of the last tenth divided by the static height at the final overpressure.
+    /// Smallest `z_rim` (of film without rings: height) of the last tenth divided by the static height at the final
+    /// overpressure.
     pub height_ratio: Option<f64>,
     /// The static shape of the verdict.
     pub reference: Option<StaticShape>,
@@ -97,7 +99,9 @@ pub struct Measures {
     pub largest_z_rim: Option<f64>,
     /// Least `z_rim` after its first peak, m.
     pub lowest_z_rim: Option<f64>,
-    /// Largest `z_rim` divided by the static height at the final overpressure, minus 1.
+    /// Largest height of film without rings, from its lowest to its highest node, m.
+    pub largest_height: Option<f64>,
+    /// Largest `z_rim` (of film without rings: height) divided by the static height at the final overpressure, minus 1.
     pub overshoot: Option<f64>,
     /// Root mean square of vz over 0.2 s after `t_deployed`, m/s.
     pub ringing_rms: Option<f64>,
@@ -108,6 +112,8 @@ pub struct Measures {
     pub t_settled: Option<f64>,
     /// Last `z_rim`, m.
     pub final_z_rim: Option<f64>,
+    /// Last height of film without rings, m.
+    pub final_height: Option<f64>,
     /// Last V, m³.
     pub final_volume: Option<f64>,
     /// Last p, Pa.
@@ -150,7 +156,7 @@ pub fn measure(
     film_stress: f64,
     done: bool,
 ) -> Measures {
-    let column = |name: &str| history.column(name);
+    let column = |name: &str| if history.has(name) { history.column(name) } else { &[] };
     let (time, vz, kinetic) = (column("time"), column("vz"), column("kinetic_energy"));
     let last = |name: &str| column(name).last().copied();
     let Some(final_pressure) = last("pressure") else { return Measures::default() };
@@ -172,6 +178,8 @@ pub fn measure(
         first_minimum_z_rim: first_minimum.map(|index| z_rim[index]),
         t_settled: peak_kinetic.and_then(|(index, value)| settled(time, kinetic, index, value)),
         largest_z_rim: largest(z_rim),
+        largest_height: largest(column(HEIGHT)),
+        final_height: column(HEIGHT).last().copied(),
         lowest_z_rim: first_peak.and_then(|peak| z_rim[peak..].iter().copied().reduce(f64::min)),
         final_z_rim: last("z_rim"),
         final_volume: last("volume"),
@@ -198,22 +206,28 @@ fn judge(history: &History, reference: &Reference, timeline: &Timeline, done: bo
         Ok(end) => *end,
         Err(missing) => return Measures { no_verdict: Some(missing.clone()), ..times },
     };
-    let column = |name: &str| history.column(name);
-    let (volume, z_rim) = (column("volume"), column("z_rim"));
-    let tenth = LastTenth::new(column("time"), volume, z_rim, (end.volume, end.height));
-    let (verdict, near_threshold) = tenth.judge(&timeline.thresholds);
+    let (volume, height) = (history.column("volume"), height(history));
+    let tenth = LastTenth::new(history.column("time"), volume, height, (end.volume, end.height));
+    // Film that is no capsule may turn, which changes its height.
+    let (verdict, near_threshold) = tenth.judge(&timeline.thresholds, history.has_rings());
     Measures {
         verdict: Some(verdict),
         near_threshold,
         volume_ratio: Some(tenth.mean_volume),
         height_ratio: Some(tenth.min_height),
         reference: Some(end),
-        overshoot: peak(z_rim).map(|(_, value)| value / end.height - 1.0),
+        overshoot: peak(height).map(|(_, value)| value / end.height - 1.0),
         ..times
     }
 }
 
-/// Times at which levels of the design shape are reached, and `t_deployed` with what follows it.
+/// The height that is compared with a static height, m.
+fn height(history: &History) -> &[f64] {
+    history.column(if history.has_rings() { "z_rim" } else { HEIGHT })
+}
+
+/// Times at which levels of the design shape are reached, and `t_deployed` with what follows it. Of film without rings
+/// the volume alone decides.
 fn times(
     history: &History,
     design: StaticShape,
@@ -221,23 +235,30 @@ fn times(
     timeline: &Timeline,
 ) -> Measures {
     let column = |name: &str| history.column(name);
-    let (time, volume, z_rim) = (column("time"), column("volume"), column("z_rim"));
-    let half = 0.5 * design.height;
-    let t_50_z_rim = first_hold(time, z_rim, half, MIN_REACHED_TIME);
-    let window = t_50_z_rim.map(|t_50| Window::of(time, z_rim, half, t_50));
+    let (time, volume) = (column("time"), column("volume"));
+    let rings = history.has_rings();
+    let (course, full) =
+        if rings { (column("z_rim"), design.height) } else { (volume, design.volume) };
+    let half = 0.5 * full;
+    let t_50 = first_hold(time, course, half, MIN_REACHED_TIME);
+    let window = t_50.map(|t_50| Window::of(time, course, half, t_50));
     let reached = |values: &[f64], level: f64| window?.first(time, values, level);
     let t_deployed = end.and_then(|end| {
         let v = end.volume * timeline.thresholds.deployed_volume;
+        if !rings {
+            return reached(volume, v);
+        }
         let h = end.height * timeline.thresholds.deployed_height;
-        let smaller_ratio = volume.iter().zip(z_rim).map(|(volume, z)| (volume / v).min(z / h));
+        let smaller_ratio = volume.iter().zip(course).map(|(volume, z)| (volume / v).min(z / h));
         reached(&smaller_ratio.collect::<Vec<f64>>(), 1.0)
     });
-    let ringing = t_deployed.and_then(|start| ringing::ringing(time, column("vz"), start));
+    let ringing =
+        t_deployed.filter(|_| rings).and_then(|start| ringing::ringing(time, column("vz"), start));
     Measures {
         design_height: Some(design.height),
         design_volume: Some(design.volume),
-        t_50_z_rim,
-        t_90_z_rim: reached(z_rim, 0.9 * design.height),
+        t_50_z_rim: t_50.filter(|_| rings),
+        t_90_z_rim: if rings { reached(course, 0.9 * full) } else { None },
         t_50_volume: first_hold(time, volume, 0.5 * design.volume, MIN_REACHED_TIME),
         t_90_volume: reached(volume, 0.9 * design.volume),
         t_deployed,
@@ -248,7 +269,7 @@ fn times(
 }
 
 /// Index and value of the largest value; the first of several.
-fn peak(values: &[f64]) -> Option<(usize, f64)> {
+pub fn peak(values: &[f64]) -> Option<(usize, f64)> {
     values
         .iter()
         .copied()

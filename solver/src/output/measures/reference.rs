@@ -28,7 +28,7 @@ pub struct StaticShape {
     pub overpressure: f64,
     /// Volume, m³.
     pub volume: f64,
-    /// Mean height of the top ring, m.
+    /// Mean height of the top ring; of film without rings its whole height, m.
     pub height: f64,
 }
 

@@ -7,6 +7,8 @@
 //! - stalled, if the mean V is below its threshold;
 //! - partial otherwise.
 //!
+//! Of film without rings the volume alone counts.
+//!
 //! A verdict is near its threshold if a change of the ratios by less than the near-threshold margin
 //! would change it.
 
@@ -37,11 +39,11 @@ impl LastTenth {
         }
     }
 
-    /// The verdict, and whether it is near a threshold.
-    pub(super) fn judge(&self, thresholds: &Thresholds) -> (Verdict, bool) {
+    /// The verdict, and whether it is near a threshold. `height`: whether the height counts.
+    pub(super) fn judge(&self, thresholds: &Thresholds, height: bool) -> (Verdict, bool) {
         let volume_margin = self.min_volume - thresholds.deployed_volume;
         let height_margin = self.min_height - thresholds.deployed_height;
-        let deployed_margin = volume_margin.min(height_margin);
+        let deployed_margin = if height { volume_margin.min(height_margin) } else { volume_margin };
         let stalled_margin = thresholds.stalled_volume - self.mean_volume;
         let (verdict, margin) = if deployed_margin >= 0.0 {
             (Verdict::Deployed, deployed_margin)
@@ -60,7 +62,7 @@ mod tests {
     use super::*;
 
     fn judge(mean_volume: f64, min_volume: f64, min_height: f64) -> (Verdict, bool) {
-        LastTenth { mean_volume, min_volume, min_height }.judge(&Thresholds::default())
+        LastTenth { mean_volume, min_volume, min_height }.judge(&Thresholds::default(), true)
     }
 
     #[test]
@@ -77,9 +79,15 @@ mod tests {
         assert_eq!(judge(0.5, 0.4, 0.94), (Verdict::Stalled, false));
         // The volume misses its threshold by little, the height by much: no small change helps.
         assert_eq!(judge(0.94, 0.925, 0.5), (Verdict::Partial, false));
+        let low = LastTenth { mean_volume: 1.0, min_volume: 0.96, min_height: 0.1 };
+        assert_eq!(low.judge(&Thresholds::default(), false), (Verdict::Deployed, false));
         let odd = Thresholds { stalled_volume: 2.0, ..Thresholds::default() };
         let tenth = LastTenth { mean_volume: 1.0, min_volume: 1.0, min_height: 1.0 };
-        assert_eq!(tenth.judge(&odd).0, Verdict::Deployed, "it takes precedence over stalled");
+        assert_eq!(
+            tenth.judge(&odd, true).0,
+            Verdict::Deployed,
+            "it takes precedence over stalled"
+        );
     }
 
     #[test]

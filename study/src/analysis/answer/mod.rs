@@ -44,6 +44,8 @@ const MIN_CHANGE_AT_END: f64 = 0.01;
 pub struct Answer {
     /// The question, as the study file has it.
     pub question: String,
+    /// Whether its film is that of a mesh.
+    pub is_from_mesh: bool,
     /// What decides the numbers and is no result.
     pub assumptions: Vec<String>,
     /// Numbers of rows by how they ended.
@@ -109,6 +111,7 @@ impl Answer {
     pub fn of(stored: &Stored<'_>, table: &Table) -> Self {
         let mut answer = Self::of_jobs(table, &stored.study.replicates());
         answer.question.clone_from(&stored.study.question);
+        answer.is_from_mesh = stored.study.has_mesh();
         answer.assumptions = assumptions(&stored.points, stored.study.assumed());
         answer.largest_strain = largest_strain(stored);
         let rows: Vec<usize> = (0..table.rows()).collect();
@@ -162,8 +165,8 @@ impl Answer {
         let best: Vec<usize> = standing.iter().copied().filter(can_be_best).collect();
         let least = |measure| extreme(table, &best, replicates, measure, |a, b| a < b);
         let most = |measure| most(table, &standing, replicates, measure, |a, b| a > b);
-        answer.fastest = least(HEADLINE[0]);
-        answer.hardest = most(ColumnId::PeakVz);
+        answer.fastest = least(table.of_any_film(HEADLINE[0]));
+        answer.hardest = most(table.of_any_film(ColumnId::PeakVz));
         answer.most_energy = most(ColumnId::PeakKineticEnergy);
         answer.trust = trust::trust(table, &rows);
         answer
@@ -229,7 +232,7 @@ fn comparison(
         by: std::slice::from_ref(&by),
         replicates,
         limits,
-        measures: &default_measures(limits),
+        measures: &default_measures(table, limits),
         zipped,
     })?;
     if ranking.is_one_job {

@@ -74,8 +74,8 @@ fn compared(table: &Table, by: &str) -> Result<Ranking, String> {
 fn medians(ranking: &Ranking, measure: usize) -> (Vec<(String, f64)>, Option<String>) {
     let measure = DEFAULT_MEASURES
         .iter()
-        .filter(|name| HEADLINE.map(ColumnId::name).contains(name))
-        .position(|name| *name == HEADLINE[measure].name())
+        .filter(|id| HEADLINE.contains(id))
+        .position(|id| *id == HEADLINE[measure])
         .unwrap();
     let name = |position: usize| ranking.candidates[position].values[0].to_string();
     let medians = (0..ranking.candidates.len()).filter_map(|position| {

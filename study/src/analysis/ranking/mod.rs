@@ -29,17 +29,17 @@ mod table;
 use sets::{candidates, sets, shared};
 
 /// The measures of a ranking where none are asked for, after those that the study limits.
-pub const DEFAULT_MEASURES: [&str; 3] =
-    ["peak_vz", "peak_kinetic_energy", "t_90_z_rim_since_release"];
+pub const DEFAULT_MEASURES: [ColumnId; 3] =
+    [ColumnId::PeakVz, ColumnId::PeakKineticEnergy, ColumnId::T90ZRimSinceRelease];
 
 /// The measures of a ranking where none are asked for: what is limited and has a better side first.
-pub fn default_measures(limits: &[ResultLimit]) -> Vec<&'static str> {
+pub fn default_measures(table: &Table, limits: &[ResultLimit]) -> Vec<&'static str> {
     let is_ordered = |limit: &&ResultLimit| {
         matches!(limit.condition, Condition::Bound { .. })
             && limit.measure.column().better != BetterSide::Neither
     };
     let limited = limits.iter().filter(is_ordered).map(|limit| limit.measure.name());
-    let all = limited.chain(DEFAULT_MEASURES);
+    let all = limited.chain(DEFAULT_MEASURES.map(|measure| table.of_any_film(measure).name()));
     let mut measures = Vec::new();
     for measure in all {
         if !measures.contains(&measure) {

@@ -11,7 +11,7 @@ use crate::input::fraction::fraction;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::result_limit::ResultLimit;
-use crate::job::row::{BetterSide, DerivedColumn};
+use crate::job::row::{BetterSide, ColumnId, DerivedColumn};
 use crate::platform::error::{Error, Result};
 use crate::platform::nearest::did_you_mean;
 use crate::print::points::chosen_runs;
@@ -24,7 +24,8 @@ mod notes;
 mod rank;
 
 /// Measures that a table compares by default.
-const DEFAULT_MEASURES: [&str; 2] = ["t_90_z_rim_since_release", "peak_kinetic_energy"];
+const DEFAULT_MEASURES: [ColumnId; 2] =
+    [ColumnId::T90ZRimSinceRelease, ColumnId::PeakKineticEnergy];
 
 /// Arguments of `billow compare`.
 #[derive(Debug, clap::Args)]
@@ -235,7 +236,8 @@ fn measures<'a>(
             let mut shown: Vec<&'a Column> = existing(&limited);
             shown.retain(|column| compare::is_measure(column));
             if shown.is_empty() {
-                shown = existing(&DEFAULT_MEASURES);
+                let measures = DEFAULT_MEASURES.map(|id| table.of_any_film(id).name());
+                shown = existing(&measures);
             }
             shown.extend(table.column(DerivedColumn::SmallestMargin.name()));
             Ok(shown)

@@ -29,7 +29,7 @@ pub(super) fn run(
     let (study, replicates) = (&stored.study, stored.study.replicates());
     let rows = rows(table, args.condition.as_deref(), &args.by, &replicates)?;
     let by = parameters(table, &rows, &args.by, &replicates)?;
-    let measures = measures(&args.measures, study)?;
+    let measures = measures(&args.measures, table, study)?;
     let input = RankingInput {
         table,
         rows: &rows,
@@ -198,9 +198,9 @@ fn parameters(
 }
 
 /// The measures, each with a better side; in a study with limits `smallest_margin` too.
-fn measures(given: &[String], study: &Study) -> Result<Vec<&'static str>> {
+fn measures(given: &[String], table: &Table, study: &Study) -> Result<Vec<&'static str>> {
     if given.is_empty() {
-        return Ok(default_measures(study.result_limits()));
+        return Ok(default_measures(table, study.result_limits()));
     }
     let mut known =
         [measures_with(BetterSide::Smaller), measures_with(BetterSide::Larger)].concat();

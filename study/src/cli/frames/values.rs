@@ -1,7 +1,7 @@
 //! Sampled values below the shapes of a picture, and the quantities that its colours show.
 
 use billow_solver::output::frames::Frame;
-use billow_solver::output::history::History;
+use billow_solver::output::history::{HEIGHT, History};
 
 use crate::input::value::short_number;
 use crate::render::figure::ticks::minus;
@@ -23,8 +23,8 @@ pub(super) fn below(frames: &[Frame], history: &History) -> (Vec<Vec<String>>, O
     if frames.len() > MAX_WITH_VALUES {
         return (frames.iter().map(|frame| vec![time(frame)]).collect(), None);
     }
-    let rings = !history.column("z_rim").is_empty();
-    let column = if rings { "z_rim" } else { "z_max" };
+    let rings = history.has_rings();
+    let column = if rings { "z_rim" } else { HEIGHT };
     let times = history.column("time");
     let sample = |frame: &Frame| times.iter().position(|time| *time >= frame.time);
     let samples: Vec<Option<usize>> = frames.iter().map(sample).collect();
@@ -49,7 +49,7 @@ pub(super) fn below(frames: &[Frame], history: &History) -> (Vec<Vec<String>>, O
         let t = Some(format!("t = {}", time(frame)));
         [t, height, pressure].into_iter().flatten().map(|text| minus(&text)).collect()
     });
-    let height = if rings { "height of the top ring" } else { "height of the highest node" };
+    let height = if rings { "height of the top ring" } else { "height of the whole film" };
     (lines.collect(), Some(format!("t: time, z: {height} ({column}), p: gas pressure (pressure)")))
 }
 
@@ -152,7 +152,7 @@ mod tests {
         assert_eq!(lines[1], ["t = 20 ms", "z = 0.347 m", "p = 200 Pa"]);
         assert!(meaning.unwrap().contains("z_rim"));
         let without = history.without_rings();
-        assert!(below(&[frame(0.0, 0.0)], &without).1.unwrap().contains("z_max"));
+        assert!(below(&[frame(0.0, 0.0)], &without).1.unwrap().contains("(height)"));
         let many: Vec<Frame> = (0..20).map(|_| frame(0.01, 0.0)).collect();
         let late = below(&[frame(0.0, 0.0), frame(0.01, 0.0), frame(1.0, 0.0)], &without).0;
         assert_eq!(late[2][0], "t = 1000 ms");

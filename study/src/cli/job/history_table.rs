@@ -12,9 +12,10 @@ use crate::print::print_table;
 use crate::store::table::{Column, Table};
 
 /// Columns of a table by default.
-const DEFAULT_COLUMNS: [&str; 8] = [
+const DEFAULT_COLUMNS: [&str; 9] = [
     "time",
     "z_rim",
+    "height",
     "vz",
     "volume",
     "pressure",

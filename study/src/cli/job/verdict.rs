@@ -55,7 +55,12 @@ pub(super) fn explanation(job: &Inspected) -> (Vec<TopicLine>, String) {
     }
     if let Some(time) = cells.number(ColumnId::TDeployed).map(brief_number) {
         let later = if is_deployed { "" } else { ", but not until the end" };
-        let text = format!("smoothed volume and height at both thresholds at {time} s{later}");
+        let what = if has_rings(cells) {
+            "smoothed volume and height at both thresholds"
+        } else {
+            "smoothed volume at its threshold"
+        };
+        let text = format!("{what} at {time} s{later}");
         lines.push(("deployed", text));
     }
     if let Some(moving) = (!is_deployed).then(|| motion_at_the_end(job)).flatten() {
@@ -90,9 +95,19 @@ fn height(cells: &Cells) -> Option<String> {
     let [value, least, margin] = check(cells, CHECKS[1])?;
     let (sign, word) = if margin >= 0.0 { ("≥", "above") } else { ("<", "below") };
     let (value, margin) = (brief_number(value), percent(margin));
+    if !has_rings(cells) {
+        return Some(format!(
+            "height_ratio {value} (least of the last tenth); it decides nothing: film that is no capsule may turn"
+        ));
+    }
     Some(format!(
         "height_ratio {value} (least of the last tenth) {sign} {least}, the threshold of deployed; {margin} {word}"
     ))
+}
+
+/// Whether the film has rings: a capsule.
+fn has_rings(cells: &Cells) -> bool {
+    cells.number(ColumnId::FinalZRim).is_some()
 }
 
 /// The static equilibrium that the run is compared with.

@@ -8,6 +8,7 @@ use crate::input::keys;
 use crate::input::value::brief_number;
 use crate::job::point::Point;
 use crate::platform::error::{Error, Result};
+use crate::print::legend::three_meshes;
 use crate::study::{Study, features};
 use billow_solver::scene::ModelKind;
 
@@ -22,6 +23,10 @@ pub(super) fn advice(study: &Study, accuracy: Option<&str>) -> Result<Vec<String
     })?;
     let table = MeshErrors::shipped();
     let scenes: Vec<_> = study.points().iter().filter_map(features).collect();
+    if study.has_mesh() {
+        let why = "the table of mesh errors has folded capsules alone";
+        return Ok(vec![format!("advice: none: {why}; {}", hint(study))]);
+    }
     let choices = match choices(table, &scenes) {
         Ok(choices) if choices.is_empty() => {
             return Ok(vec![format!(
@@ -83,8 +88,9 @@ fn hint(study: &Study) -> String {
                 format!(", and a list of values of {parameter} instead of bisect")
             });
             format!(
-                "run some points with \"solver\": {{\"meshes\": [4, 6, 8]}}{values}: the errors in their rows follow \
-                 from the three runs, without the table"
+                "run some points with {THREE_MESHES}{values}: the errors in their rows follow from the three runs, \
+                 without the table",
+                THREE_MESHES = three_meshes(study.has_mesh())
             )
         }
         Some(point) => {

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use billow_solver::models::film::capsule::{contact_distance, imperfection_amplitude};
-use billow_solver::scene::{ModelKind, Scene};
+use billow_solver::scene::{Design, ModelKind, Scene};
 
 use crate::input::value::{range_text, short_number};
 use crate::job::canonical_json;
@@ -22,7 +22,9 @@ pub(super) fn in_use(points: &[&Point]) -> Option<String> {
     let mut known: BTreeMap<String, [Option<f64>; 2]> = BTreeMap::new();
     for scene in points.iter().filter(film).map(|point| &point.job.scene) {
         let mut design = scene.design.clone();
-        design.subdivisions = 1;
+        if let Ok(design) = design.folded_mut() {
+            design.subdivisions = 1;
+        }
         let given = (scene.contact.distance, scene.imperfection_amplitude, scene.seed > 0);
         let key = canonical_json(&(&design, given));
         if known.contains_key(&key) {
@@ -47,9 +49,16 @@ pub(super) fn in_use(points: &[&Point]) -> Option<String> {
 
 /// Contact distance and amplitude of the imperfection of a scene, m.
 fn lengths(scene: &Scene) -> Option<[Option<f64>; 2]> {
-    let distance = contact_distance(scene.contact.distance, &scene.design).ok()?;
-    Some([
-        Some(distance),
-        imperfection_amplitude(&scene.design, scene.seed, scene.imperfection_amplitude).ok()?,
-    ])
+    let (seed, given) = (scene.seed, scene.imperfection_amplitude);
+    Some(match &scene.design {
+        Design::Capsule(design) => [
+            Some(contact_distance(scene.contact.distance, design).ok()?),
+            imperfection_amplitude(design, seed, given).ok()?,
+        ],
+        Design::Mesh(design) => {
+            let film = &design.film;
+            let distance = scene.contact.distance.unwrap_or(film.contact_distance);
+            [Some(distance), (seed > 0).then(|| given.unwrap_or(film.default_amplitude()))]
+        }
+    })
 }

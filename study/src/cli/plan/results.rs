@@ -7,7 +7,7 @@ use crate::job::cost::Costs;
 use crate::job::row::ColumnId;
 use crate::print::{count, duration};
 use crate::study::plan::{PlanCounts, borders};
-use crate::study::{Study, meshes_text};
+use crate::study::{Study, meshes_text, subdivisions};
 
 /// Points whose cost is asked, at most.
 const MAX_COSTED: usize = 20;
@@ -51,12 +51,12 @@ fn pilots(study: &Study) -> Option<String> {
     let film = study.points().iter().filter(|point| point.infeasible.is_none());
     let film = film.filter(|point| point.job.scene.solver.model == ModelKind::Film);
     let film: Vec<_> = film.take(MAX_COSTED).collect();
-    let mesh = film.first()?.job.scene.design.subdivisions;
+    let mesh = subdivisions(film.first()?);
     let others: Vec<u32> = meshes.list.iter().copied().filter(|n| *n != mesh).collect();
     let seconds = others.iter().map(|n| {
         let of_mesh = film.iter().map(|point| {
             let mut scene = (*point.job.scene).clone();
-            scene.design.subdivisions = *n;
+            scene.design = study.on_mesh(&scene.design, *n);
             costs.seconds(&scene)
         });
         of_mesh.fold(0.0, f64::max)

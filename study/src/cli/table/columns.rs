@@ -125,7 +125,9 @@ fn main_columns<'a>(table: &'a Table, sort: &[String]) -> Vec<&'a Column> {
     }
     names.extend(limits.map(|name| (name, true)));
     let measures = MAIN_MEASURES.iter().filter(|id| has_strategies || **id != ColumnId::PeakVz);
-    names.extend(measures.map(|id| (id.name(), has_strategies && loads.contains(id))));
+    names.extend(
+        measures.map(|id| (table.of_any_film(*id).name(), has_strategies && loads.contains(id))),
+    );
     let mut shown: Vec<(&Column, bool)> = Vec::new();
     for (name, always) in names {
         let new = columns.iter().chain(shown.iter().map(|(column, _)| column));

@@ -27,6 +27,7 @@ const SUPPORT_TARGETS: &[words::Word] = &[
     explained("nodes", "nodes by number"),
     explained("plane", "nodes within tolerance of a plane at the start"),
     explained("boundary", "nodes on free edges of the film"),
+    explained("loop", "nodes on one loop of free edges, by number"),
     explained("all", "every node of the film"),
 ];
 
@@ -44,14 +45,17 @@ pub static SCENE_WINDOW_KEYS: &[Key] = &[
 #[rustfmt::skip]
 pub static MESH_KEYS: &[Key] = &[
     key("positions", KeyKind::Text, Required, "\"bag.obj\"",
-        "File of the film at the start, relative to the scene file: OBJ, STL, PLY, Gmsh (.msh) or FOLD, by its ending; \
-         faces counter-clockwise seen from outside; polygons are cut into triangles."),
+        "File of the film at the start, relative to this file: OBJ, STL, PLY, Gmsh (.msh) or FOLD, by its ending; \
+         faces counter-clockwise seen from outside; polygons are cut into triangles. Or {\"obj\": the text of an OBJ file}."),
     key("scale", above(Dimension::Number, 0.0, 1e9), Number(1.0), "0.001",
         "Length of one unit of the mesh files, m."),
+    key("unit", KeyKind::Text, Absent("that of scale"), "\"mm\"", "Unit of length of the mesh files, in place of scale."),
     key("texture_unit", likely(above(Dimension::Length, 0.0, 1e6), 1e-4, 1e3), Absent("texture coordinates are ignored"), "\"1 m\"",
         "Length of one unit of the texture coordinates (vt) of an OBJ file, which then are the stress-free shape."),
     key("weld", likely(from(Dimension::Length, 0.0, 1.0), 0.0, 0.1), Absent("nothing is welded"), "\"1 um\"",
         "Vertices of positions within this distance become one node; 0 joins vertices that coincide."),
+    key("subdivisions", KeyKind::Integer(1, 1000), Integer(1), "2",
+        "Pieces along each edge: every triangle is cut into the square of this number."),
 ];
 
 /// The keys of a support that hold one value.
@@ -69,6 +73,8 @@ pub static SUPPORT_KEYS: &[Key] = &[
         "Normal of the plane, of any length."),
     key("tolerance", likely(from(Dimension::Length, 0.0, 1e3), 0.0, 1.0), Absent("a millionth of the film's size"),
         "\"1 mm\"", "Distance from the plane within which a node belongs to it."),
+    key("loop", KeyKind::Integer(1, 1_000_000), Absent("needed for loop"), "1",
+        "Number of a loop of free edges, as billow solve --check lists them."),
     key("fix", KeyKind::Text, Absent("needed; for plane, its normal component"), "\"xyz\"",
         "Displacement components it holds: letters of xyz, each once."),
 ];

@@ -42,7 +42,17 @@ pub const SECTIONS: &[(&str, &str)] = &[
 
 /// Keys of a study that hold more than one value, beside the sections, and their meanings.
 pub(crate) const STRUCTURED: &[(&str, &str)] = &[
-    ("supports", "What holds the capsule. Default: its bottom ring, in xyz."),
+    (
+        "design.mesh",
+        "Film from a mesh in place of a fold design: the name of a file beside the study, or an object with the keys of a \
+         scene's mesh (positions, reference, closure, weld, …). The fold's keys and measures are then absent.",
+    ),
+    ("design.unit", "Unit of length of the mesh, as in \"mm\". Default: m."),
+    (
+        "supports",
+        "What holds the film. Default: the bottom ring of a capsule, in xyz. Film from a mesh: the supports of a scene \
+         (box, nodes, plane, boundary, loop, all); none by default.",
+    ),
     (
         "strategies",
         "Inflation strategies: named schedules. `direct` always exists: released at once, inflow \

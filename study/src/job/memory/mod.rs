@@ -101,9 +101,10 @@ pub fn estimate(scene: &Scene) -> Estimate {
             Estimate { history, total: bytes(JOB).saturating_add(history), ..Estimate::default() }
         }
         ModelKind::Film => {
+            let folded = scene.design.folded().ok();
             let film = film(&FilmSize {
                 elements: scene.design.elements(),
-                stack: Some([scene.design.panels, scene.design.storeys]),
+                stack: folded.map(|design| [design.panels, design.storeys]),
                 contact: true,
                 statics: true,
                 motion: true,
@@ -112,7 +113,9 @@ pub fn estimate(scene: &Scene) -> Estimate {
                 frames: scene.outputs.frames,
                 tracks: 0,
             });
-            let gap = FoldDesign { subdivisions: 4, ..scene.design.clone() }.elements();
+            let gap =
+                folded.map(|design| FoldDesign { subdivisions: 4, ..design.clone() }.elements());
+            let gap = gap.unwrap_or(0);
             let gap = bytes(JOB + REFERENCE_GAP * gap as f64);
             Estimate { total: film.total.max(gap), ..film }
         }

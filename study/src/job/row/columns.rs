@@ -159,7 +159,7 @@ columns! {
         "mean volume of the last tenth of the run over reference_volume"
         end => end.measure(|measures| measures.volume_ratio);
     HeightRatio "height_ratio" Number ["1"] Outcome Larger
-        "least z_rim of the last tenth of the run over reference_height"
+        "least z_rim (of film without rings: height) of the last tenth of the run over reference_height"
         end => end.measure(|measures| measures.height_ratio);
     T50ZRim "t_50_z_rim" Number ["s"] Measures Smaller
         "first time at half of design_height that holds 5 ms"
@@ -174,7 +174,7 @@ columns! {
         "first time at which the smoothed volume reaches nine tenths of design_volume"
         end => end.measure(|measures| measures.t_90_volume);
     TDeployed "t_deployed" Number ["s"] Measures Smaller
-        "first time at which smoothed volume and z_rim are at both deployed thresholds"
+        "first time at which smoothed volume and z_rim are at both deployed thresholds; of film without rings the volume"
         end => end.measure(|measures| measures.t_deployed);
     T50ZRimSinceRelease "t_50_z_rim_since_release" Number ["s"] Measures Smaller
         "t_50_z_rim minus the time at which the lid is released; equal to t_50_z_rim without a lid"
@@ -222,7 +222,7 @@ columns! {
         "z_rim at the first minimum after its first peak"
         end => end.measure(|measures| measures.first_minimum_z_rim);
     Overshoot "overshoot" Number ["1"] Measures Smaller Signed
-        "largest z_rim over reference_height, minus 1"
+        "largest z_rim (of film without rings: height) over reference_height, minus 1"
         end => end.measure(|measures| measures.overshoot);
     RingingRms "ringing_rms" Number ["m/s"] Measures Smaller
         "root mean square of vz over 0.2 s after t_deployed"
@@ -242,6 +242,12 @@ columns! {
     FinalZRim "final_z_rim" Number ["m"] Measures Neither
         "last mean height of the top ring"
         end => end.measure(|measures| measures.final_z_rim);
+    LargestHeight "largest_height" Number ["m"] Measures Neither
+        "largest height of film without rings, from its lowest to its highest node"
+        end => end.measure(|measures| measures.largest_height);
+    FinalHeight "final_height" Number ["m"] Measures Neither
+        "last height of film without rings"
+        end => end.measure(|measures| measures.final_height);
     FinalVolume "final_volume" Number ["m3"] Measures Neither
         "last volume"
         end => end.measure(|measures| measures.final_volume);
@@ -291,7 +297,7 @@ columns! {
         "energy lost in the film's material over the work of the gas"
         end => end.audit(|audit| audit.material_loss_fraction);
     NumericalFraction "numerical_fraction" Number ["1"] Audit Neither Signed
-        "numerical dissipation over the work of the gas until the first peak of z_rim"
+        "numerical dissipation over the work of the gas until the first peak of z_rim (of film without rings: of the kinetic energy)"
         end => end.audit(|audit| audit.numerical_fraction);
     NumericallyDamped "numerically_damped" Bool [""] Audit Neither
         "whether numerical_fraction is above 0.05: kinetic energies and rebounds are damped by the numerics"

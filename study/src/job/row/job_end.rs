@@ -47,7 +47,7 @@ impl<'a> JobEnd<'a> {
         // A job that panicked or crashed may have done so in the solution of its pattern.
         let pattern = match outcome {
             Outcome::Panicked(_) | Outcome::Crashed => None,
-            _ => FoldPattern::new(&job.scene.design).ok(),
+            _ => job.scene.design.pattern().ok(),
         };
         Some(Self { job, outcome, status, pattern, content_hash })
     }

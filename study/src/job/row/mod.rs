@@ -12,6 +12,7 @@ mod counts;
 mod derived;
 mod job_end;
 mod noisy;
+mod without_rings;
 
 pub use columns::{BetterSide, COLUMNS, CellType, ColumnGroup, ColumnId, RowColumn};
 pub use counts::Counts;

@@ -25,11 +25,12 @@ fn line(answer: &Answer, ranking: &Ranking) -> String {
     let mut parts = outcomes(ranking).into_iter().collect::<Vec<_>>();
     // Of a choice, as a strategy is, the speed counts too: both loads say which one is gentler.
     let with_speed = by.cell_type == CellType::Text;
+    let is = |id: ColumnId, name: &str| id.name() == name || id.without_rings().name() == name;
     let is_shown = |measure: &&RankedMeasure| {
         let name = &measure.column.name;
         answer.worst.iter().any(|worst| worst.measure == *name)
-            || HEADLINE.iter().any(|id| id.name() == name)
-            || with_speed && *name == ColumnId::PeakVz.name()
+            || HEADLINE.iter().any(|id| is(*id, name))
+            || with_speed && is(ColumnId::PeakVz, name)
     };
     for (index, measure) in ranking.measures.iter().enumerate().filter(|(_, m)| is_shown(m)) {
         let name = &measure.column.name;

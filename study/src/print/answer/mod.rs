@@ -114,7 +114,7 @@ pub fn print_next(answer: &Answer, root: &Path, out: &mut dyn Write) -> io::Resu
         if answer.searches.is_some() {
             // A search judges single runs: it has no values from two meshes.
             writeln!(out, "           billow plan {root}/study.json --set design.subdivisions=8")?;
-        } else {
+        } else if !answer.is_from_mesh {
             // It names methods with smaller errors.
             writeln!(out, "           billow plan {root}/study.json --accuracy \"15 %\"")?;
         }
@@ -190,7 +190,7 @@ fn deployed(answer: &Answer) -> String {
 /// A measure with its value, and what is to be known about it.
 fn value_text(extreme: &Extreme) -> String {
     let mut notes = Vec::new();
-    if extreme.measure == ColumnId::PeakVz.name() {
+    if ColumnId::from_name(&extreme.measure).is_some_and(ColumnId::is_noisy) {
         notes.push("noisy".to_owned());
     }
     if extreme.extrapolated {

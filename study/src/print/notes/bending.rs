@@ -35,7 +35,8 @@ fn bend(point: &Point) -> Option<[f64; 2]> {
     let pressure = mass * gas.species.gas_constant * temperature / solved.erected_volume
         - gas.ambient_pressure;
     let length = libm::cbrt(scene.film.bending_stiffness() / pressure);
-    (pressure > 0.0).then(|| [length, length / scene.design.bottom_radius])
+    let radius = scene.design.folded().ok()?.bottom_radius;
+    (pressure > 0.0).then(|| [length, length / radius])
 }
 
 /// Whether bending may change the results of film, or not.

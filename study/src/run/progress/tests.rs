@@ -11,7 +11,7 @@ use crate::job::{JobId, Status};
 
 fn events() -> Vec<Event> {
     let id = JobId::from_digits(&"ab".repeat(16)).unwrap();
-    let progress = Progress { time: 0.5, end_time: 2.0, z_centre: 0.3, pressure: 51.0 };
+    let progress = Progress { time: 0.5, end_time: 2.0, height: 0.3, pressure: 51.0 };
     vec![
         Event::GenerationStarted { number: 0, jobs: 4, finished: 3 },
         Event::Note("a line is torn".to_owned()),
@@ -55,7 +55,7 @@ fn a_long_job_is_reported_from_time_to_time_with_the_remaining_time() {
     let written = String::from_utf8(lines.out.clone()).unwrap();
     let expected = "4 jobs, 3 finished, 1 to run\n\
                     3 of 4 jobs finished, 0 failed, about 5 min remaining\n\
-                    \x20 abababab  t 0.500 of 2 s  z_centre 0.300 m  pressure 51 Pa  N=5 M=2\n";
+                    \x20 abababab  t 0.500 of 2 s  height 0.300 m  pressure 51 Pa  N=5 M=2\n";
     assert_eq!(written, expected, "one report, not one per sample");
     lines.event(&finished);
     assert!(lines.work.running.is_empty());
@@ -79,7 +79,7 @@ fn a_terminal_has_a_bar_and_keeps_the_other_lines() {
         lines.event(&event);
     }
     assert_eq!((bar.position(), bar.length()), (3, Some(4)));
-    let running = "3 of 4 jobs finished, 0 failed; abababab  t 0.500 of 2 s  z_centre 0.300 m";
+    let running = "3 of 4 jobs finished, 0 failed; abababab  t 0.500 of 2 s  height 0.300 m";
     assert!(bar.message().starts_with(running), "{}", bar.message());
     lines.event(&finished);
     assert_eq!(bar.position(), 4);

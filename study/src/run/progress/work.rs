@@ -130,8 +130,8 @@ impl Running {
             Some(progress) if progress.time <= 0.0 => {
                 format!("{id}  prepares its mesh and its static reference  {label}")
             }
-            Some(Progress { time, end_time, z_centre, pressure }) => format!(
-                "{id}  t {time:.3} of {} s  z_centre {z_centre:.3} m  pressure {} Pa  {label}",
+            Some(Progress { time, end_time, height, pressure }) => format!(
+                "{id}  t {time:.3} of {} s  height {height:.3} m  pressure {} Pa  {label}",
                 short_number(end_time),
                 brief_number(pressure)
             ),

@@ -12,6 +12,7 @@ use crate::job::point::Point;
 use crate::job::row::ColumnId;
 use crate::job::{Job, JobId};
 use crate::platform::error::{Error, Result};
+use crate::platform::hash::bytes_hash;
 use crate::run::event::{Event, Reporter};
 use crate::store::finished;
 use crate::store::history_file;
@@ -172,7 +173,7 @@ impl<'a, 'w> State<'a, 'w> {
                 let bytes = history_file::encode(job, &deployment, hash)
                     .map_err(|problem| Error::Disk { path, problem })?;
                 file_stamp = Some(self.run.results.write_job(&job.id, &bytes)?);
-                file_hash = Some(history_file::bytes_hash(&bytes));
+                file_hash = Some(bytes_hash(&bytes));
             }
             let verdict = cells.text(ColumnId::Verdict);
             events.push(Event::JobFinished {

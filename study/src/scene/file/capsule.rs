@@ -26,7 +26,7 @@ pub(super) fn read(
     needs: Needs,
     source: &Source,
 ) -> Result<Shape, InputError> {
-    let design = &settings.design(source)?;
+    let design = &settings.fold_design(source)?;
     let erected = settings.picked("design.shape", &SHAPES).unwrap_or(needs.statics);
     check(design, erected, source)?;
     let stack = (!erected).then_some([design.panels, design.storeys]);
@@ -55,6 +55,7 @@ pub(super) fn read(
     };
     Ok(Shape {
         shell: Shell::of_mesh(&mesh),
+        unstressed: None,
         rings: Some(Rings::of(&mesh, design.stowed_height)),
         regions: vec![
             ("bottom_ring", sorted(&mesh.bottom_ring)),
@@ -129,6 +130,7 @@ fn numbering(mesh: Mesh) -> Numbering {
         surface,
         node: (0..nodes).map(Some).collect(),
         element: (0..elements).map(Some).collect(),
+        pieces: 1,
         origin: Vector3::zeros(),
     }
 }

@@ -48,7 +48,7 @@ pub(super) fn read(
     if tree.get("design").is_none() {
         return Ok(Some(contact));
     }
-    let resolved = capsule::resolved_contact(contact, &settings.design(source)?)
+    let resolved = capsule::resolved_contact(contact, &settings.fold_design(source)?)
         .map_err(|error| source.error("design", "", error.to_string(), ""))?;
     Ok(Some(resolved))
 }
@@ -141,11 +141,34 @@ fn crossing(topology: &Topology, at_edge: &[Vec<u32>], positions: &Field) -> BTr
     pairs
 }
 
-/// Film that starts in film: it has no side there. Its pairs of faces lose their contact where the scene says so
-/// (`contact.ignore_start`), or where they touch and the scene asks for no contact; else they are refused.
+/// What film that starts in film may do: touch film, or pass through it.
+#[derive(Clone, Copy)]
+pub(super) struct Start {
+    pub may_touch: bool,
+    pub may_cross: bool,
+    /// What is allowed instead, for errors.
+    pub allowed: &'static str,
+}
+
+impl Start {
+    /// That of a scene: what `contact.ignore_start` says, and touch where it asks for no contact.
+    pub fn of_scene(tree: &Json, settings: &Settings) -> Self {
+        let given = tree.get("contact").filter(|json| **json != Json::Null);
+        let ignore = settings.flag("contact.ignore_start") == Some(true);
+        Self {
+            may_touch: ignore || given.is_none(),
+            may_cross: ignore,
+            allowed: "a gap between layers, however small; contact.ignore_start true for no contact of these pairs; or \
+                      contact.enabled false",
+        }
+    }
+}
+
+/// Film that starts in film: it has no side there. Its pairs of faces lose their contact where they may, else they are
+/// refused.
 pub(super) fn settle_start(
     film: &mut FilmScene,
-    (tree, settings): (&Json, &Settings),
+    start: Start,
     numbering: &Numbering,
     notes: &mut Vec<String>,
     source: &Source,
@@ -162,12 +185,9 @@ pub(super) fn settle_start(
         _ => ("passes through", &found.crossing),
     };
     let problem = format!("film {does} film at the start{}", places(shown, numbering));
-    let given = tree.get("contact").filter(|json| **json != Json::Null);
-    let ignore = settings.flag("contact.ignore_start") == Some(true);
-    if !ignore && (given.is_some() || !found.crossing.is_empty()) {
-        let allowed = "a gap between layers, however small; contact.ignore_start true for no contact of these pairs; or \
-                       contact.enabled false";
-        return Err(source.error("contact", "", problem, allowed));
+    let may = if found.crossing.is_empty() { start.may_touch } else { start.may_cross };
+    if !may {
+        return Err(source.error("contact", "", problem, start.allowed));
     }
     notes.push(format!("{problem}: these pairs have no contact, all others have"));
     if let Some(contact) = &mut film.contact {

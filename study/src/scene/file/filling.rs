@@ -18,7 +18,7 @@ use crate::input::sections::check_window;
 use crate::input::settings::Settings;
 use crate::input::source::{Source, shown};
 use crate::input::value::brief_number;
-use crate::job::surroundings::Surroundings;
+use crate::job::surroundings::{Surroundings, of_sphere};
 use crate::platform::error::Result;
 
 /// Reads `gas`. With gas, fans close an open film.
@@ -73,10 +73,7 @@ pub(super) fn read(
             )
             .into());
     }
-    seams::check(shape, source)?;
-    components::check(shape, notes, source)?;
-    close(shape, supports, notes);
-    let volume = check_outward(shape, source)?;
+    let volume = closed(shape, supports, notes, source)?;
     let windows = windows(gas.get("windows"), settings, reader)?;
     let mut supply = settings.gas(0.0, windows, source)?;
     let initial_temperature = initial_temperature(&supply, settings, source)?;
@@ -84,6 +81,19 @@ pub(super) fn read(
     notes.extend(below_ambient(&supply, volume, initial_temperature));
     notes.extend(air_outside(tree, settings, shape, &supply, source)?);
     Ok(Filling::Gas { supply, initial_temperature })
+}
+
+/// Closes a film for its gas and returns its volume, m³; refuses film that leaks or is turned.
+pub(super) fn closed(
+    shape: &mut Shape,
+    supports: &[FilmSupport],
+    notes: &mut Vec<String>,
+    source: &Source,
+) -> Checked<f64> {
+    seams::check(shape, source)?;
+    components::check(shape, notes, source)?;
+    close(shape, supports, notes);
+    check_outward(shape, source)
 }
 
 /// Temperature of the gas at the start, K.
@@ -152,8 +162,7 @@ fn air_outside(
     supply: &GasSupply,
     source: &Source,
 ) -> Checked<Vec<String>> {
-    let area = shape.shell.reference_area();
-    let volume = area * libm::sqrt(area) / (6.0 * libm::sqrt(core::f64::consts::PI));
+    let (area, volume) = of_sphere(shape.shell.reference_area());
     let given = tree.get("gravity");
     let gravity = super::gravity(given, source)?.norm();
     let film = settings.film(source)?;

@@ -23,12 +23,14 @@ pub(super) struct Needs {
     pub statics: bool,
     /// [`FilmSize::bending`].
     pub bending: Option<bool>,
+    /// Pieces into which each triangle of a mesh is cut; 0 counts as 1.
+    pub pieces: u64,
 }
 
 impl Needs {
     /// The estimate for film of this number of elements; `stack`: panels and storeys of a folded capsule. Bytes.
     fn film(self, elements: u64, stack: Option<[u32; 2]>) -> u64 {
-        let Self { contact, statics, bending } = self;
+        let Self { contact, statics, bending, .. } = self;
         let motion = !statics;
         let contact = contact && motion;
         let (samples, frames, tracks) = (0.0, 0, 0);
@@ -68,6 +70,7 @@ impl Needs {
         source: &Source,
     ) -> Result<(), InputError> {
         let elements = surface.faces.iter().map(|face| face.corners.len() as u64 - 2).sum::<u64>();
+        let elements = elements.saturating_mul(self.pieces.max(1));
         let film = if elements > 0 { self.film(elements, None) } else { 0 };
         let needed = film.saturating_add(ELEMENT.saturating_mul(elements));
         check(needed, key, &format!("{name:?}"), &format!("has {elements} elements"), source)

@@ -3,6 +3,7 @@
 
 use billow_solver::geometry::field::Field;
 use billow_solver::geometry::mesh_io::obj_reader::{Face, Surface};
+use billow_solver::geometry::refinement::Refinement;
 use billow_solver::geometry::shell::{Shell, ShellError};
 use billow_solver::mechanics::closure::ClosureNodes;
 use billow_solver::mechanics::supports::Supports;
@@ -18,17 +19,31 @@ use crate::input::json::Json;
 use crate::input::keys::MESH_KEYS;
 use crate::input::object::Object;
 use crate::input::source::Source;
+use crate::input::units::{self, Dimension};
 use crate::platform::error::{InputError, Result};
 
 fn object<'a>(json: &'a Json, source: &'a Source) -> Result<Object<'a>> {
     Ok(Object::new(json, "mesh", "a mesh", MESH_KEYS, &["reference", "closure"], source)?)
 }
 
+/// Length of one unit of the mesh files, m.
+fn scale(object: &Object<'_>) -> std::result::Result<f64, InputError> {
+    let Some(unit) = object.text("unit")? else { return object.needed("scale") };
+    if object.given("scale").is_some() {
+        let problem = "is given beside scale: both are the length of one unit of the files";
+        return Err(object.error("unit", problem, "one of the two"));
+    }
+    units::parse(&format!("1 {unit}"), Dimension::Length).map_err(|_| {
+        let allowed = format!("one of {}", Dimension::Length.units().join(", "));
+        object.error("unit", "is not a unit of length", allowed)
+    })
+}
+
 /// The surface at the start as its file has it, in m, and the name of the file.
 fn surface_of(object: &Object<'_>, reader: &mut Reader) -> Result<(Surface, String)> {
-    let file = object.needed_text("positions")?;
-    let scale = object.needed("scale")?;
-    let mut surface = reader.surface("mesh.positions", &file)?;
+    let given = object.given("positions").ok_or_else(|| object.missing("positions"))?;
+    let scale = scale(object)?;
+    let (mut surface, file) = reader.surface("mesh.positions", given)?;
     for vertex in &mut surface.vertices {
         *vertex *= scale;
     }
@@ -41,12 +56,18 @@ pub(super) fn surface(json: &Json, reader: &mut Reader) -> Result<Surface> {
     Ok(surface_of(&object(json, &source)?, reader)?.0)
 }
 
+/// Whether a mesh has a stress-free shape of its own.
+pub(super) fn has_reference(mesh: &Json) -> bool {
+    ["reference", "texture_unit"].iter().any(|key| mesh.get(key).is_some())
+}
+
 /// Reads `mesh`.
 pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
     let source = reader.source.clone();
     let object = object(json, &source)?;
+    reader.needs.pieces = u64::from(object.count("subdivisions")?).pow(2);
     let (mut surface, file) = surface_of(&object, reader)?;
-    let scale = object.needed("scale")?;
+    let scale = scale(&object)?;
     let origin = origin(&surface.vertices);
     for vertex in &mut surface.vertices {
         *vertex -= origin;
@@ -71,6 +92,7 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
     let closing: Vec<&Face> = closing.map(|(face, _)| face).collect();
     let node = weld::nodes(&surface, &joined, &film, &closing);
     let flat = reference(&object, &surface, &film, scale, reader)?;
+    let has_reference = object.given("reference").is_some();
     let triangles = triangles(&surface, &flat, &object)?;
     let mut shell = Shell { positions: positions(&surface, &node), ..Shell::default() };
     let corners = |face: &Face, triangle: [usize; 3]| -> Result<[u32; 3]> {
@@ -79,6 +101,8 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
         check_triangle(&file, face, triangle, &source)?;
         Ok(triangle)
     };
+    let n = object.count("subdivisions")?;
+    let pieces = n.saturating_mul(n);
     let mut element = Vec::new();
     let mut next = 0;
     for (index, (face, film)) in surface.faces.iter().zip(&film).enumerate() {
@@ -89,17 +113,24 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
                 let flat = triangle.map(|corner| flat[index][corner]);
                 shell.reference.push(flattened(flat, face, &object)?);
                 element.push(Some(next));
-                next += 1;
+                next += pieces;
             } else {
                 shell.closure.push(nodes);
                 element.push(None);
             }
         }
     }
-    let numbering = Numbering { surface, node, element, origin };
+    let numbering = Numbering { surface, node, element, pieces, origin };
     check_edges(&shell, &numbering, &file, &source)?;
+    let mut unstressed = has_reference.then(|| unstressed(&shell, &numbering, &flat)).flatten();
+    if n > 1 {
+        let finer = Refinement::new(&shell, n);
+        unstressed = unstressed.map(|corners| finer.at_nodes(&corners));
+        shell = finer.shell(&shell);
+    }
     Ok(Shape {
         shell,
+        unstressed,
         numbering,
         rings: None,
         regions: Vec::new(),
@@ -110,6 +141,29 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
         file,
     })
 }
+
+/// Positions of the nodes where the film is free of stress, m; `None` where the corners of its faces at a node have
+/// several.
+fn unstressed(
+    shell: &Shell,
+    numbering: &Numbering,
+    flat: &[Vec<Vector3<f64>>],
+) -> Option<Vec<Vector3<f64>>> {
+    let mut positions: Vec<Option<Vector3<f64>>> = vec![None; shell.positions.len()];
+    let tolerance = EQUAL * shell.reference_area().sqrt();
+    for (face, corners) in numbering.surface.faces.iter().zip(flat) {
+        for (vertex, corner) in face.corners.iter().zip(corners) {
+            let position = &mut positions[numbering.node[*vertex as usize]? as usize];
+            if (position.get_or_insert(*corner).metric_distance(corner)) > tolerance {
+                return None;
+            }
+        }
+    }
+    positions.into_iter().collect()
+}
+
+/// Distance of positions that count as one over the square root of the area of the film. Chosen: far above rounding.
+const EQUAL: f64 = 1e-9;
 
 /// Distance of a film from the origin of its file over its size from which the run has an origin of its own. Chosen:
 /// coordinates lose two of their sixteen digits there.

@@ -10,6 +10,7 @@ pub(super) mod components;
 mod conflicts;
 mod contact;
 mod cut;
+pub mod design_mesh;
 mod filling;
 mod flow_table;
 mod formats;
@@ -49,8 +50,9 @@ use crate::input::{study_file, syntax};
 use crate::job::canonical_json;
 use crate::job::memory::bending;
 use crate::platform::error::{Error, InputError, Result};
+use crate::platform::hash::bytes_hash;
 use crate::platform::provenance::PHYSICS_VERSION;
-use crate::store::history_file::bytes_hash;
+use contact::Start;
 use memory::Needs;
 use reader::Reader;
 use shape::Shape;
@@ -156,7 +158,7 @@ impl SceneFile {
         check_one_shape(tree, &reader.source)?;
         let has_design = tree.get("design").is_some();
         if has_design {
-            settings.design(&reader.source)?;
+            settings.fold_design(&reader.source)?;
         }
         let statics = is_static(&settings);
         let contact = contact::read(tree, &settings, &reader.source);
@@ -169,7 +171,8 @@ impl SceneFile {
         }
         let integrator = settings.integrator(&reader.source)?;
         let bending = bending(&film, integrator).map(|stiff| stiff || statics);
-        reader.needs = Needs { contact: matches!(contact, Ok(Some(_))), statics, bending };
+        let has_contact = matches!(contact, Ok(Some(_)));
+        reader.needs = Needs { contact: has_contact, statics, bending, pieces: 1 };
         let mut shape = match tree.get("mesh") {
             Some(json) => mesh::read(json, reader)?,
             None => capsule::read(&settings, reader.needs, &reader.source)?,
@@ -228,12 +231,11 @@ impl SceneFile {
         contact::check_plates(&film, &reader.source)?;
         notes.extend(without_effect(&film, &settings));
         if let Some(mesh) = tree.get("mesh") {
-            let is_given = |key| mesh.get(key).is_some();
-            let has_reference = is_given("reference") || is_given("texture_unit");
+            let has_reference = mesh::has_reference(mesh);
             notes.extend(judge::notes(&film, &shape.numbering, has_reference, &reader.source)?);
         }
-        let (given, numbering) = ((tree, &settings), &shape.numbering);
-        contact::settle_start(&mut film, given, numbering, &mut notes, &reader.source)?;
+        let (start, numbering) = (Start::of_scene(tree, &settings), &shape.numbering);
+        contact::settle_start(&mut film, start, numbering, &mut notes, &reader.source)?;
         if statics {
             notes.extend(contact::crossing_film(&film, numbering));
         }

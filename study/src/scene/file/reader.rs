@@ -8,10 +8,11 @@ use billow_solver::geometry::mesh_io::obj_reader::Surface;
 
 use super::formats::{self, Read};
 use super::memory::{Needs, check_file};
+use crate::input::json::Json;
 use crate::input::source::Source;
 use crate::platform::error::{Error, Result};
 use crate::platform::files;
-use crate::store::history_file::bytes_hash;
+use crate::platform::hash::bytes_hash;
 
 /// Largest mesh file read, bytes (chosen: 1 GiB holds tens of millions of vertices).
 const MAX_MESH_SIZE: u64 = 1 << 30;
@@ -31,6 +32,8 @@ pub(crate) struct Reader {
     pub needs: Needs,
     /// How files were read.
     pub notes: Vec<String>,
+    /// The surfaces read, with key and name, where they are kept.
+    pub keep: Option<Vec<(String, String, Surface)>>,
 }
 
 impl Reader {
@@ -42,19 +45,36 @@ impl Reader {
             hashes: BTreeMap::new(),
             needs: Needs::default(),
             notes: Vec::new(),
+            keep: None,
         }
     }
 
-    /// The surface of a mesh file that a key names. Notes how it was read.
-    pub fn surface(&mut self, key: &str, name: &str) -> Result<Surface> {
-        let bytes = self.bytes(key, name)?;
+    /// The surface of a mesh file that a key names, or whose text it has; and its name. Notes how it was read.
+    pub fn surface(&mut self, key: &str, given: &Json) -> Result<(Surface, String)> {
+        let text = |name| match given.get(name) {
+            Some(Json::Text(text)) => Some(text.as_str()),
+            _ => None,
+        };
+        let (name, file, bytes) = match (given, text("obj")) {
+            (Json::Text(name), _) => (name.as_str(), name.as_str(), self.bytes(key, name)?),
+            (_, Some(obj)) => (text("file").unwrap_or("obj"), "text.obj", obj.as_bytes().to_vec()),
+            _ => {
+                let problem = format!("is {}, not a mesh", given.kind());
+                let allowed = "the name of a file, or {\"obj\": the text of an OBJ file}";
+                return Err(self.source.error(key, given, problem, allowed).into());
+            }
+        };
+        let name = name.to_owned();
         let Read { surface, note } =
-            formats::read(name, &bytes).map_err(|(problem, allowed)| {
+            formats::read(file, &bytes).map_err(|(problem, allowed)| {
                 self.source.error(key, format!("{name:?}"), problem, allowed)
             })?;
         self.notes.extend(note.map(|note| format!("{key}: {note}")));
-        self.needs.check_surface(&surface, key, name, &self.source)?;
-        Ok(surface)
+        self.needs.check_surface(&surface, key, &name, &self.source)?;
+        if let Some(kept) = &mut self.keep {
+            kept.push((key.to_owned(), name.clone(), surface.clone()));
+        }
+        Ok((surface, name))
     }
 
     /// The bytes of a file that a key names.

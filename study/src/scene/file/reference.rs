@@ -5,7 +5,6 @@ use billow_solver::geometry::shell::flat;
 use nalgebra::{Vector2, Vector3};
 
 use super::reader::Reader;
-use crate::input::json::Json;
 use crate::input::object::Object;
 use crate::platform::error::Result;
 
@@ -34,17 +33,14 @@ pub(super) fn reference(
             let Some(unit) = unit else { return Ok(surface.faces.iter().map(start).collect()) };
             return texture(object, surface, unit);
         }
-        Some(Json::Text(name)) => {
-            let flat = reader.surface("mesh.reference", name)?;
+        Some(name) => {
+            let (flat, _) = reader.surface("mesh.reference", name)?;
             let position = |v: &u32| flat.vertices[*v as usize] * scale;
             let corners = |face: &Face| face.corners.iter().map(position).collect();
             flat.faces
                 .iter()
                 .map(|face| (corners(face), format!("the face {}", face.place)))
                 .collect()
-        }
-        Some(_) => {
-            return Err(object.error("reference", "is not the name of a file", REFERENCE).into());
         }
     };
     let films = film.iter().filter(|film| **film).count();

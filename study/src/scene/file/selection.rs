@@ -52,7 +52,7 @@ pub(super) fn nodes(
     let positions = &shape.shell.positions;
     let all = film_nodes(shape);
     let within = |inside: &dyn Fn(Vector3<f64>) -> bool| -> Vec<u32> {
-        all.iter().copied().filter(|node| inside(positions[*node as usize])).collect()
+        all.clone().filter(|node| inside(positions[*node as usize])).collect()
     };
     let (nodes, region) = match (on, plane) {
         ("box", _) => {
@@ -73,11 +73,13 @@ pub(super) fn nodes(
             (within(&|x| plane.has(x)), format!("{} m of the plane", plane.tolerance))
         }
         ("boundary", _) => (boundary(shape), "the free edges".to_owned()),
-        ("all", _) => (all.iter().copied().collect(), "the film".to_owned()),
+        ("loop", _) => (of_loop(object, shape)?, "the loop".to_owned()),
+        ("all", _) => (all.clone().collect(), "the film".to_owned()),
         (region, None) => {
             let known = shape.regions.iter().find(|(name, _)| *name == region);
             let Some((_, nodes)) = known else {
-                let allowed = "box, nodes, plane, boundary, all; only a design has rings and caps";
+                let allowed =
+                    "box, nodes, plane, boundary, loop, all; only a design has rings and caps";
                 return Err(object.error("on", "a mesh has no rings and caps", allowed));
             };
             (nodes.clone(), String::new())
@@ -95,9 +97,9 @@ pub(super) fn nodes(
     Ok(nodes)
 }
 
-/// Nodes of the film. Only these can be held: the tips of fans are not among them.
-fn film_nodes(shape: &Shape) -> BTreeSet<u32> {
-    shape.numbering.node.iter().flatten().copied().collect()
+/// Nodes of the film, before fans close it.
+fn film_nodes(shape: &Shape) -> std::ops::Range<u32> {
+    0..u32::try_from(shape.shell.positions.len()).unwrap_or(u32::MAX)
 }
 
 /// Nodes of the vertices in a list.
@@ -148,10 +150,29 @@ fn number(json: &Json) -> Result<i64, String> {
 
 /// Nodes on edges with film on one side only.
 fn boundary(shape: &Shape) -> Vec<u32> {
-    let triangles = &shape.shell.triangles;
-    let edges: BTreeSet<[u32; 2]> =
-        triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
-    let free = edges.iter().filter(|[a, b]| !edges.contains(&[*b, *a]));
-    let nodes: BTreeSet<u32> = free.flatten().copied().collect();
-    nodes.into_iter().collect()
+    sorted(shape.shell.rims().into_iter().flatten())
+}
+
+/// Nodes of one loop of free edges.
+fn of_loop(object: &Object<'_>, shape: &Shape) -> Result<Vec<u32>, InputError> {
+    let loops = shape.shell.rims();
+    let number = object.count("loop")? as usize;
+    let Some(nodes) = number.checked_sub(1).and_then(|index| loops.get(index)) else {
+        let problem = format!("the film has {} loops of free edges", loops.len());
+        let at = |nodes: &Vec<u32>| {
+            let position = shape.shell.positions[nodes[0] as usize] + shape.numbering.origin;
+            format!("{} edges at {:?} m", nodes.len(), <[f64; 3]>::from(position))
+        };
+        let listed: Vec<String> =
+            (1..).zip(&loops).map(|(number, nodes)| format!("{number} ({})", at(nodes))).collect();
+        let allowed =
+            if listed.is_empty() { "another selection".to_owned() } else { listed.join(", ") };
+        return Err(object.error("loop", problem, allowed));
+    };
+    Ok(sorted(nodes.iter().copied()))
+}
+
+/// Nodes in ascending order, each once.
+fn sorted(nodes: impl Iterator<Item = u32>) -> Vec<u32> {
+    nodes.collect::<BTreeSet<u32>>().into_iter().collect()
 }

@@ -10,6 +10,9 @@ pub(super) struct Shape {
     /// The film: positions at the start, stress-free shape, triangles, closure.
     pub shell: Shell,
     pub numbering: Numbering,
+    /// Positions of the nodes where the film is free of stress, m; `None` where they are those at the start, or where
+    /// pieces are cut apart.
+    pub unstressed: Option<Vec<Vector3<f64>>>,
     /// Rings of a capsule; `None` for any other mesh.
     pub rings: Option<Rings>,
     /// Rings and caps of a capsule by name, with their nodes in ascending order.
@@ -54,8 +57,10 @@ pub struct Numbering {
     pub surface: Surface,
     /// Node of each vertex; `None` for a vertex without a face.
     pub node: Vec<Option<u32>>,
-    /// Element of each triangle; `None` for a triangle that closes the volume.
+    /// Element of each triangle, the first of its pieces; `None` for a triangle that closes the volume.
     pub element: Vec<Option<u32>>,
+    /// Pieces into which each triangle is cut.
+    pub pieces: u32,
     /// Where the coordinates of the run begin in those of the file, m: 0 unless the film is far away.
     pub origin: Vector3<f64>,
 }
@@ -63,7 +68,7 @@ pub struct Numbering {
 impl Numbering {
     /// The triangle of an element in words: line of its face, vertices, a place.
     pub fn place(&self, element: usize) -> String {
-        let element = u32::try_from(element).ok();
+        let element = u32::try_from(element).ok().map(|element| element - element % self.pieces);
         let triangle = self.element.iter().position(|known| known.is_some() && *known == element);
         let mut rest = triangle.unwrap_or_default();
         for face in &self.surface.faces {
@@ -89,7 +94,7 @@ impl Numbering {
         let faces = self.surface.faces.iter().enumerate();
         let triangles = faces.flat_map(|(index, face)| vec![index; face.corners.len() - 2]);
         let film = triangles.zip(&self.element).filter(|(_, element)| element.is_some());
-        film.map(|(face, _)| face).collect()
+        film.flat_map(|(face, _)| vec![face; self.pieces as usize]).collect()
     }
 
     /// The first vertex of a node as the file counts them, from 1; 0 for a node that is not in it.

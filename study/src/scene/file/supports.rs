@@ -141,6 +141,7 @@ fn refuse_keys_of_others(object: &Object<'_>, on: &str) -> Result<(), InputError
     let keys_of = [
         ("box", &["min", "max"][..]),
         ("nodes", &["nodes"]),
+        ("loop", &["loop"]),
         ("plane", &["point", "normal", "tolerance", "body"]),
     ];
     for (other, keys) in keys_of.iter().filter(|(other, _)| *other != on) {

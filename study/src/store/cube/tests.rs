@@ -11,6 +11,7 @@ use super::*;
 use crate::job::executor::Outcome;
 use crate::job::row::Cells;
 use crate::platform::files::{Disk, Files};
+use crate::platform::hash::bytes_hash;
 use crate::run::fixture;
 use crate::store::history_file;
 use crate::store::journal::{Journal, Record};
@@ -48,7 +49,7 @@ fn ran(varied: &str, run: &dyn Fn(usize) -> Option<Deployment>) -> Folder {
         let record = Record {
             job: point.job.id.clone(),
             cells: Cells::of(&point.job, &outcome, Some(&hash)).unwrap(),
-            file_hash: Some(history_file::bytes_hash(&bytes)),
+            file_hash: Some(bytes_hash(&bytes)),
             file_stamp: None,
         };
         journal.records.insert(record.job.clone(), record);

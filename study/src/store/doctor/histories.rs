@@ -7,6 +7,7 @@ use crate::job::JobId;
 use crate::job::row::ColumnId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::disk_error;
+use crate::platform::hash::bytes_hash;
 use crate::store::history_file;
 use crate::store::journal::{Journal, Record};
 use crate::store::results::Results;
@@ -50,7 +51,7 @@ fn problem(results: &Results<'_>, record: &Record) -> Result<Option<String>> {
         Err(error) => return Err(disk_error(&path, &error)),
     };
     let read = history_file::read(&path);
-    if record.file_hash.as_ref().is_some_and(|hash| history_file::bytes_hash(&bytes) != *hash) {
+    if record.file_hash.as_ref().is_some_and(|hash| bytes_hash(&bytes) != *hash) {
         let reason = match &read {
             Err(Error::Disk { problem, .. }) => problem.split('\n').next().unwrap_or("").to_owned(),
             Err(other) => other.to_string(),

@@ -36,7 +36,6 @@ mod write;
 
 pub use content_hash::{content_hash, hash_of};
 pub use read::{StoredHistory, read};
-pub use sha256::bytes_hash;
 pub use vtkhdf::StoredFrames;
 pub use write::{encode, encode_scene};
 

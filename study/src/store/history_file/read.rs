@@ -70,8 +70,9 @@ fn read_history(file: &File) -> hdf5::Result<History> {
     let group = file.group("history")?;
     let mut columns = Vec::with_capacity(COLUMNS.len());
     let rings = RING_COLUMNS.iter().any(|name| group.link_exists(name));
+    let empty = if rings { History::new() } else { History::new().without_rings() };
     for column in COLUMNS {
-        if rings || !RING_COLUMNS.contains(&column.name) {
+        if empty.has(column.name) {
             columns.push(group.dataset(column.name)?.read_raw::<f64>()?);
         } else {
             columns.push(vec![0.0; columns[0].len()]);

@@ -1,4 +1,4 @@
-//! SHA-256 of bytes and of named arrays, in lower-case hexadecimal digits.
+//! SHA-256 of named arrays, in lower-case hexadecimal digits.
 
 use billow_solver::platform::seal::hexadecimal;
 use sha2::{Digest, Sha256};
@@ -31,9 +31,4 @@ impl Contents {
     pub(super) fn hash(self) -> String {
         hexadecimal(&self.0.finalize())
     }
-}
-
-/// SHA-256 of bytes, in lower-case hexadecimal digits.
-pub fn bytes_hash(bytes: &[u8]) -> String {
-    hexadecimal(&Sha256::digest(bytes))
 }

@@ -7,6 +7,7 @@ use super::Results;
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{self, Stamp, disk_error};
+use crate::platform::hash::bytes_hash;
 use crate::store::history_file::{self, StoredHistory};
 use crate::store::journal::Record;
 
@@ -43,7 +44,7 @@ impl Results<'_> {
             _ => {}
         }
         match found.and_then(|_| self.files.read(&path)) {
-            Ok(bytes) if history_file::bytes_hash(&bytes) == *hash => Ok(None),
+            Ok(bytes) if bytes_hash(&bytes) == *hash => Ok(None),
             Ok(_) => Ok(again(OTHER_FILE)),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(again(MISSING_FILE)),
             Err(error) => Err(disk_error(&path, &error)),
@@ -63,7 +64,7 @@ impl Results<'_> {
             }
             _ => disk_error(&path, &error),
         })?;
-        if record.file_hash.as_ref().is_none_or(|hash| history_file::bytes_hash(&bytes) == *hash) {
+        if record.file_hash.as_ref().is_none_or(|hash| bytes_hash(&bytes) == *hash) {
             return Ok(());
         }
         let problem = next_run(self.root(), "not the history that was written for this job");

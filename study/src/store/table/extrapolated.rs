@@ -5,7 +5,10 @@
 //! error = max(e, |m − m'|)    below and above m;  e: that of the table for these meshes;  m': from the two coarsest of three
 //! outside the table, or without runs of such scenes on the two finest, of three meshes only:
 //! error = max(e₀, 3 |m − m'|)   e₀: e of the table's base scene
+//! film from a mesh, of which the table knows nothing (grid convergence index, errors go as 1/n):
+//! m = m_f,  error = s max |m_j − m_i|/(1/i − 1/j)/f    pairs of meshes i < j, the finest f;  s = 1.25 with three, 3 with two
 //! ```
+//! P. J. Roache, "Perspective: a method for uniform reporting of grid refinement studies", J. Fluids Eng. 116 (1994).
 //! [Record 24](../../../../docs/decisions/0024-mesh-errors.md) has the reasons for the factor.
 //!
 //! The row of a run on the finest mesh has them, if the runs on the next mesh that are equal in all else are done and
@@ -92,7 +95,7 @@ impl Table {
         let of_measure = |promised: &Promised| {
             let value = |row: usize| {
                 let scene = &points[row].point.job.scene;
-                let n = scene.design.subdivisions;
+                let n = scene.design.subdivisions();
                 let alone = || {
                     let keeps = of_study.is_none_or(|mesh| mesh == n);
                     keeps.then(|| self.of_one_mesh(row, promised)).flatten()
@@ -110,6 +113,9 @@ impl Table {
                     Some((meshes, values?))
                 });
                 let Some((meshes, values)) = used else { return alone() };
+                if scene.design.folded().is_err() {
+                    return Some(by_convergence_index(meshes, &values));
+                }
                 let features = self.features(row, scene)?;
                 Some(extrapolated(promised, scene, &features, meshes, &values))
             };
@@ -224,8 +230,23 @@ impl Table {
             Some(Value::Number(number)) => Some(*number),
             _ => None,
         };
-        Some(Features::of(scene, number(ColumnId::TopRadius)?, number(ColumnId::Height)?))
+        Features::of(scene, number(ColumnId::TopRadius)?, number(ColumnId::Height)?)
     }
+}
+
+/// Safety factors of the grid convergence index: with two meshes, and with more.
+pub const INDEX_FACTORS: [f64; 2] = [3.0, 1.25];
+
+/// The value on the finest of two or three meshes of film from a mesh, and its error by the grid convergence index.
+fn by_convergence_index(meshes: &[u32], values: &[f64]) -> (f64, Option<[f64; 2]>) {
+    let factor = INDEX_FACTORS[usize::from(meshes.len() > 2)];
+    let finest = f64::from(meshes[meshes.len() - 1]);
+    let slope = |(n, m): (&[u32], &[f64])| {
+        let [coarse, fine] = [n[0], n[1]].map(|n| 1.0 / f64::from(n));
+        (m[1] - m[0]).abs() / (coarse - fine)
+    };
+    let largest = meshes.windows(2).zip(values.windows(2)).map(slope).fold(0.0, f64::max);
+    (values[values.len() - 1], Some([factor * largest / finest; 2]))
 }
 
 /// The extrapolated value of a measure on two or three meshes, and its error if it is known.

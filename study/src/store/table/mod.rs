@@ -180,6 +180,16 @@ impl Column {
 }
 
 impl Table {
+    /// A measure, or the one in its place where no row has it and film without rings has the other.
+    pub fn of_any_film(&self, measure: ColumnId) -> ColumnId {
+        let has = |measure: ColumnId| {
+            let column = self.column(measure.name());
+            column.is_some_and(|column| column.cells.iter().any(|cell| *cell != Value::Null))
+        };
+        let other = measure.without_rings();
+        if !has(measure) && has(other) { other } else { measure }
+    }
+
     /// Builds the table of a plan. `unit` gives the SI unit of a parameter, `assumed` the ranges of what is assumed.
     pub fn build(
         points: &[Point],

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use billow_solver::models::film::{CONTACT_COLUMNS, FILM_STRESS_99, PLEAT_COLUMNS};
 use billow_solver::models::run::FILM_SPEED;
-use billow_solver::output::history::{COLUMNS as HISTORY_COLUMNS, RING_COLUMNS};
+use billow_solver::output::history::{COLUMNS as HISTORY_COLUMNS, HEIGHT, RING_COLUMNS};
 
 use super::extrapolated::{EXTRAPOLATED, EXTRAPOLATED_ERROR_MEANING, EXTRAPOLATED_ERRORS};
 use crate::accuracy::{NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED};
@@ -133,8 +133,11 @@ fn history_columns(page: &mut String) {
          |---|---|---|---|\n",
     );
     for column in HISTORY_COLUMNS {
-        let present =
-            if RING_COLUMNS.contains(&column.name) { "film with rings" } else { "always" };
+        let present = match column.name {
+            HEIGHT => "film without rings",
+            name if RING_COLUMNS.contains(&name) => "film with rings",
+            _ => "always",
+        };
         let _ = writeln!(
             page,
             "| `{}` | {} | {present} | {} |",

@@ -70,7 +70,7 @@ pub(super) fn every_step(rig: &Rig, subdivisions: u32) -> Outcome {
         for (kind, chirality) in runs.iter().copied() {
             let mut scene = paper::capsule(subdivisions, 0.1);
             scene.film.compression = compression;
-            scene.design.chirality = chirality;
+            scene.design.folded_mut().unwrap().chirality = chirality;
             (scene.solver.model, scene.solver.integrator) = (ModelKind::Film, kind);
             let contact = FilmContact { monitor, ..FilmContact::default() };
             let (run, deployment) = deploy(rig, &scene, contact)?;

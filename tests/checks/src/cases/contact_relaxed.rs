@@ -29,9 +29,9 @@ const CHECK_INTERVAL: f64 = 0.01;
 
 /// The stowed capsule at rest under a fixed pressure (Pa).
 fn relaxed(rig: &Rig, scene: &Scene, pressure: f64) -> Result<(FilmSimulation, Mesh)> {
-    let stowed = Shape::Stowed(scene.design.stowed_height);
+    let stowed = Shape::Stowed(scene.design.folded()?.stowed_height);
     let (film, mesh) = capsule::film_scene(rig.instruction_set, scene, stowed, DEFAULT_CFL)?;
-    let contact = capsule::resolved_contact(FilmContact::default(), &scene.design)?;
+    let contact = capsule::resolved_contact(FilmContact::default(), scene.design.folded()?)?;
     let mut film =
         FilmScene { filling: Filling::Pressure(pressure), contact: Some(contact), ..film };
     film.solver.mass_damping = DAMPING;
@@ -66,7 +66,7 @@ fn compare(film: &FilmView<'_>, mesh: &Mesh, expected: &StaticState) -> Vec<Row>
     };
     vec![
         row("volume, m3", film.state.volume, expected.volume, "volume_band"),
-        row("rim height, m", rim, expected.z_rim, "rim_height_band"),
+        row("rim height, m", rim, expected.height, "rim_height_band"),
         row("strain energy, J", strain, expected.strain_energy, "strain_energy_band"),
         Row::at_most(&name("kinetic energy over p V"), share, band("kinetic_share")),
         Row::at_most(&name("passages"), passages, 0.0),
@@ -100,7 +100,7 @@ pub fn end_state_polygon(rig: &Rig) -> Outcome {
         let scene = paper::capsule(subdivisions, 0.3);
         let states = static_states(rig.instruction_set, &scene, &pressures)?;
         for (row, state) in rows.iter().zip(states) {
-            let sizes = [state.volume, state.z_rim, state.strain_energy];
+            let sizes = [state.volume, state.height, state.strain_energy];
             let names = ["volume, m3", "rim height, m", "strain energy, J"];
             for (index, (name, value)) in names.into_iter().zip(sizes).enumerate() {
                 let name = format!("{name}, at {} Pa, n {subdivisions}", row[1]);

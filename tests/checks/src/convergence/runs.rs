@@ -59,7 +59,10 @@ impl MeshRun {
     /// Model and subdivisions; a model without mesh has 0.
     pub(super) fn mesh(&self) -> (ModelKind, u32) {
         match self.scene.solver.model {
-            ModelKind::Film => (ModelKind::Film, self.scene.design.subdivisions),
+            ModelKind::Film => (
+                ModelKind::Film,
+                self.scene.design.folded().map_or(0, |design| design.subdivisions),
+            ),
             meshless => (meshless, 0),
         }
     }
@@ -84,6 +87,7 @@ pub(super) fn by_scene(all: &[Stored<'_>]) -> Vec<SceneRuns> {
         let (Some(solved), true) = (point.solved, cells.is_trusted()) else { continue };
         let scene = &point.job.scene;
         let features = Features::of(scene, solved.top_radius, solved.height);
+        let Some(features) = features else { continue };
         let label = point
             .job
             .parameters
@@ -110,7 +114,7 @@ fn key(scene: &Scene) -> String {
     let mut scene = scene.clone();
     scene.film.loss_factor = LOSS_FACTOR;
     scene.gas.heat_transfer = HeatTransfer::Coefficient(HEAT_TRANSFER);
-    scene.design.subdivisions = 0;
+    scene.design.folded_mut().unwrap().subdivisions = 0;
     scene.seed = 0;
     scene.solver.model = ModelKind::Film;
     scene.solver.stepping = step(&scene);

@@ -16,15 +16,15 @@ const MESHES: [u32; 6] = [4, 6, 8, 12, 16, 24];
 fn scene([panels, storeys]: [u32; 2], limit: f64, error: &dyn Fn(u32, u64) -> f64) -> SceneRuns {
     let run = |n: u32, seed: u64| {
         let mut scene = capsule(n, 0.3);
-        scene.design.panels = panels;
-        scene.design.storeys = storeys;
+        scene.design.folded_mut().unwrap().panels = panels;
+        scene.design.folded_mut().unwrap().storeys = storeys;
         scene.solver.model = ModelKind::Film;
         scene.solver.stepping = Stepping::Stable(0.45);
         scene.seed = seed;
         let mut cells = Cells::new(Status::Done);
         cells.set(ColumnId::T90ZRim, limit * (1.0 + error(n, seed)));
         cells.set(ColumnId::Verdict, "deployed");
-        MeshRun { features: Features::of(&scene, 0.365, 1.0), scene, cells }
+        MeshRun { features: Features::of(&scene, 0.365, 1.0).unwrap(), scene, cells }
     };
     let seeds = |n: u32| if n <= 12 { 1..=5 } else { 1..=1 };
     let runs = MESHES.iter().flat_map(|n| seeds(*n).map(|seed| run(*n, seed))).collect();
@@ -89,7 +89,8 @@ fn bias_and_changes_are_those_of_the_runs() {
 fn the_change_by_an_assumed_value_is_an_entry_of_its_own() {
     let mut scenes = scenes();
     for scene in &mut scenes {
-        let coarse = scene.runs.iter().filter(|run| run.scene.design.subdivisions == 4);
+        let coarse =
+            scene.runs.iter().filter(|run| run.scene.design.folded().unwrap().subdivisions == 4);
         let mut changed: Vec<MeshRun> = coarse.cloned().collect();
         for run in &mut changed {
             run.scene.film.loss_factor = 0.03;

@@ -20,7 +20,6 @@ use std::collections::BTreeMap;
 
 use super::statics::{Erected, erected};
 use crate::geometry::field::Field;
-use crate::geometry::fold::FoldPattern;
 use crate::output::measures::{NoReference, StaticShape, design_overpressure};
 use crate::platform::simd::InstructionSet;
 use crate::scene::Scene;
@@ -67,14 +66,12 @@ pub struct Ladder {
 impl Ladder {
     /// The ladder of a [`super::reference_scene`].
     pub fn new(instruction_set: InstructionSet, scene: &Scene) -> Result<Self, SceneError> {
-        let pattern = FoldPattern::new(&scene.design)?;
-        let mean_radius = 0.5 * (pattern.bottom_radius + pattern.top_radius);
         let film = &scene.film;
         Ok(Self {
             instruction_set,
             scene: scene.clone(),
             design_overpressure: design_overpressure(
-                mean_radius,
+                scene.design.mean_radius()?,
                 film.youngs_modulus,
                 film.thickness,
             ),
@@ -238,7 +235,7 @@ impl Ladder {
             StaticFailureKind::Stopped => NoReference::Stopped,
             _ => NoReference::NoEquilibrium { overpressure, problem: failure.to_string() },
         })?;
-        let shape = StaticShape { overpressure, volume: state.volume, height: state.z_rim };
+        let shape = StaticShape { overpressure, volume: state.volume, height: state.height };
         Ok((shape, state.positions))
     }
 

@@ -37,7 +37,7 @@ fn interpolated_shapes_are_those_of_a_separate_search() {
         let mut capsule = erected(InstructionSet::detect(), &scene).unwrap();
         let exact = capsule.settle(overpressure).unwrap();
         assert!((found.volume / exact.volume - 1.0).abs() < 1e-3, "{overpressure}: {found:?}");
-        assert!((found.height / exact.z_rim - 1.0).abs() < 1e-3, "{overpressure}: {found:?}");
+        assert!((found.height / exact.height - 1.0).abs() < 1e-3, "{overpressure}: {found:?}");
     }
 }
 

@@ -49,7 +49,9 @@ pub(super) const SCENE: StabilityScene = StabilityScene {
 fn scene(values: &Values) -> Scene {
     let subdivisions = values.count("subdivisions");
     let mut scene = paper::empty_capsule(subdivisions, END);
-    scene.design.stowed_height = values.get("stowed_height");
+    if let Ok(design) = scene.design.folded_mut() {
+        design.stowed_height = values.get("stowed_height");
+    }
     scene.film = values.film();
     scene.gas.initial_mass = values.get("residual_mass");
     let rate = values.get("mass_flow_rate");
@@ -80,13 +82,13 @@ fn prepare(rig: &Rig, method: Method, values: &Values) -> Result<Prepared> {
     }
     scene.solver.model = ModelKind::Film;
     // The step of the values is set later: a scene has a CFL number of its range.
-    let (height, cfl) = (scene.design.stowed_height, step.min(1.0));
+    let (height, cfl) = (scene.design.folded()?.stowed_height, step.min(1.0));
     scene.solver.stepping = Stepping::Stable(cfl);
     let stowed = Shape::Stowed(height);
     let (film, mesh) = capsule::film_scene(rig.instruction_set, &scene, stowed, cfl)?;
     let monitor = MonitorSettings::EVERY_STEP;
     let contact = FilmContact { monitor, ..FilmContact::of(&scene.contact) };
-    let contact = capsule::resolved_contact(contact, &scene.design)?;
+    let contact = capsule::resolved_contact(contact, scene.design.folded()?)?;
     let film = FilmScene { contact: Some(contact), ..film };
     prepared(rig, film, method, values, &[], Some(Rings::of(&mesh, height)), None)
 }
