@@ -11,6 +11,7 @@ mod doctor_and_rerun;
 mod film_study;
 mod fold;
 mod frames;
+mod inflow;
 mod keys;
 mod mangled_studies;
 mod memory;

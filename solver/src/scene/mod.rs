@@ -13,6 +13,7 @@ pub mod monitor_settings;
 pub mod motion;
 pub mod paper;
 pub mod plate;
+pub mod tank;
 pub mod timeline;
 mod validate;
 

@@ -96,7 +96,13 @@ impl Name {
 
     /// Plain name and symbol.
     pub fn with_symbol(&self) -> String {
-        let gap = if self.symbol.is_empty() { "" } else { " " };
+        // "… along z, vz": two symbols do not stand together.
+        let ends_in_symbol = self.plain.rsplit(' ').next().is_some_and(|word| word.len() == 1);
+        let gap = match self.symbol.as_str() {
+            "" => "",
+            _ if ends_in_symbol => ", ",
+            _ => " ",
+        };
         format!("{}{gap}{}", self.plain, self.symbol)
     }
 
@@ -139,6 +145,7 @@ mod tests {
                 "Largest of all new_one (m)",
             ),
             (quantity("new_one", &"long ".repeat(20)), &metre, "new_one (m)"),
+            (quantity("vz", "velocity along z"), &Unit::si("m/s"), "Velocity along z, vz (m/s)"),
             (Name::of_parameter("strategy"), &Unit::si("1"), "Inflation strategy"),
             (Name::of_parameter("mass_flow_rate"), &flow, "Mass flow rate (g/s)"),
             (Name::of_parameter("strategies.a.mass"), &metre, "strategies.a.mass (m)"),

@@ -13,6 +13,7 @@ pub mod schema;
 pub(crate) mod sections;
 pub(crate) mod settings;
 pub(crate) mod source;
+pub(crate) mod standard_flow;
 pub(crate) mod strategy;
 pub mod study_file;
 pub(crate) mod supports;

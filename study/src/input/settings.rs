@@ -42,9 +42,14 @@ pub(crate) struct Settings {
     pub strategies: BTreeMap<String, Strategy>,
     /// What holds the capsule of a study.
     pub supports: Vec<Support>,
+    /// The tables of inflow windows of strategies.
+    pub tables: Arc<FlowTables>,
     /// The film of a study with a mesh in place of a fold design, by the subdivisions of its triangles; else empty.
     pub meshes: Arc<BTreeMap<u32, MeshDesign>>,
 }
+
+/// Windows of the tables of a study, by strategy and inflow window; their times count from the start of the window.
+pub(crate) type FlowTables = BTreeMap<(String, usize), Vec<InflowWindow>>;
 
 /// Overpressure at which a vent is fully open over that at which it begins to open, by default. Chosen: that of common
 /// relief valves (10 % accumulation).
@@ -55,7 +60,15 @@ impl Settings {
     pub fn new(table: &'static Table) -> Self {
         let values = table.keys.iter().map(|key| key.default_value()).collect();
         let (rows, strategies, supports) = (Vec::new(), BTreeMap::new(), Vec::new());
-        Self { table, values, rows, strategies, supports, meshes: Arc::default() }
+        Self {
+            table,
+            values,
+            rows,
+            strategies,
+            supports,
+            tables: Arc::default(),
+            meshes: Arc::default(),
+        }
     }
 
     /// The value of a key, by its position in the table.

@@ -43,7 +43,7 @@ pub(crate) fn read(name: &str, json: &Json, source: &Source) -> Result<Vec<Row>,
     let allowed = "a list of {\"from\": \"5 s\", \"to\": \"12 s\", \"mass_flow_rate\": \"1 g/s\"}";
     for (index, json) in list(windows, &path, source, allowed)?.iter().enumerate() {
         let path = format!("{path}[{index}]");
-        let window = Object::new(json, &path, "an inflow window", WINDOW_KEYS, &[], source)?;
+        let window = Object::new(json, &path, "an inflow window", WINDOW_KEYS, &["table"], source)?;
         strategy.extend(rows(&path, WINDOW_KEYS, window.values()?));
     }
     Ok(strategy)

@@ -172,10 +172,23 @@ fn in_motion(scene: &SceneFile, run: &FilmRun, deployment: &Deployment) -> Json 
     });
     merge(&mut summary, more);
     if let Stop::Failed(failure) = &deployment.stop {
-        summary["stop"] =
-            json!({"kind": failure.kind.name(), "time": failure.time, "location": failure.place});
+        summary["stop"] = json!({"kind": failure.kind.name(), "time": failure.time, "location": in_file(scene, &failure.place)});
     }
     summary
+}
+
+/// A place of the run ("node 3, element 5: …") with the face or the vertex of the user's file.
+fn in_file(scene: &SceneFile, place: &str) -> String {
+    let number = |word: &str| -> Option<usize> {
+        let rest = place.split_once(word)?.1;
+        rest.split(|c: char| !c.is_ascii_digit()).next()?.parse().ok()
+    };
+    let face = number("element ").map(|element| scene.numbering.place(element));
+    let vertex = number("node ").map(|node| format!("vertex {}", node_place(scene, node)));
+    match face.or(vertex).filter(|_| scene.rings.is_none()) {
+        Some(known) => format!("{place}; in the file {known}"),
+        None => place.to_owned(),
+    }
 }
 
 /// Contact, with its extremes over the samples; `null` where it is off.

@@ -10,6 +10,7 @@ use crate::input::settings::{Settings, Strategy};
 use crate::input::source::{Source, shown};
 use crate::input::value::brief_number;
 use crate::platform::error::InputError;
+use crate::scene::file::tank;
 
 /// Positions of the values of a window.
 const FROM: usize = position(WINDOW_KEYS, "from");
@@ -17,6 +18,8 @@ const TO: usize = position(WINDOW_KEYS, "to");
 const MASS: usize = position(WINDOW_KEYS, "mass");
 const RATE: usize = position(WINDOW_KEYS, "mass_flow_rate");
 const TEMPERATURE: usize = position(WINDOW_KEYS, "temperature");
+const TANK_PRESSURE: usize = position(WINDOW_KEYS, "tank_pressure");
+const ORIFICE_AREA: usize = position(WINDOW_KEYS, "orifice_area");
 
 /// What the inflow of a point follows from.
 pub(super) struct Inflow<'a> {
@@ -35,7 +38,7 @@ impl Inflow<'_> {
         let temperature = self.settings.needed("gas.inflow_temperature", self.source)?;
         let mut windows: Vec<InflowWindow> = self.burst(temperature)?.into_iter().collect();
         for index in 0..self.strategy.windows {
-            windows.push(self.window(index, temperature)?);
+            windows.extend(self.window(index, temperature)?);
         }
         Ok(windows)
     }
@@ -69,13 +72,36 @@ impl Inflow<'_> {
         Ok(Some(InflowWindow { from, to, mass_flow_rate: rate, temperature }))
     }
 
-    /// One window of the strategy, with the study's values where it gives none.
-    fn window(&self, index: usize, temperature: f64) -> Result<InflowWindow, InputError> {
+    /// One window of the strategy, with the study's values where it gives none; of a tank those of its blow-down.
+    fn window(&self, index: usize, temperature: f64) -> Result<Vec<InflowWindow>, InputError> {
         let Self { source, end_time, .. } = *self;
         let path = format!("strategies.{}.inflow[{index}]", self.name);
         let value = |key| self.settings.of_window(self.strategy, index, key);
         let [given_to, mass] = [TO, MASS].map(value);
         let from = value(FROM).unwrap_or(self.settings.release_time(self.strategy));
+        let temperature = value(TEMPERATURE).unwrap_or(temperature);
+        let tank = tank::Given {
+            mass,
+            tank_pressure: value(TANK_PRESSURE),
+            orifice_area: value(ORIFICE_AREA),
+            mass_flow_rate: value(RATE),
+            temperature,
+            from,
+            to: given_to,
+        };
+        if let Some(table) = self.settings.tables.get(&(self.name.to_owned(), index)) {
+            let at = |window: &InflowWindow| InflowWindow {
+                from: from + window.from,
+                to: from + window.to,
+                temperature,
+                ..*window
+            };
+            return Ok(table.iter().map(at).collect());
+        }
+        if tank.is_tank() {
+            let outside = self.settings.needed("gas.ambient_pressure", source)?;
+            return tank.windows(&path, &self.settings.species(source)?, outside, source);
+        }
         let rate = match value(RATE) {
             Some(rate) => rate,
             None => self.settings.needed("gas.mass_flow_rate", source)?,
@@ -103,7 +129,6 @@ impl Inflow<'_> {
             None => given_to.map(|to| ("to", format!("{} s", shown(to)))),
         };
         check_window(&path, [from, to], end, end_time, source)?;
-        let temperature = value(TEMPERATURE).unwrap_or(temperature);
-        Ok(InflowWindow { from, to, mass_flow_rate: rate, temperature })
+        Ok(vec![InflowWindow { from, to, mass_flow_rate: rate, temperature }])
     }
 }

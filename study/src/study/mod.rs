@@ -47,12 +47,13 @@ use crate::input::settings::Settings;
 use crate::input::source::Source;
 use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
-use crate::input::{study_file, syntax};
+use crate::input::{standard_flow, study_file, syntax};
 use crate::job::JobId;
 use crate::job::limits::JobLimits;
 use crate::job::point::{Point, Searched};
 use crate::job::result_limit::ResultLimit;
 use crate::platform::error::{InputError, Result as BillowResult};
+use crate::scene::file::flow_table;
 use finished::FinishedRow;
 use grid::{Context, Grid};
 pub(crate) use meshes::features;
@@ -164,7 +165,9 @@ impl Study {
             return Err(InputError { hint: format!("billow solve {file}"), ..error });
         }
         let mut notes = overrides::apply(&mut tree, sets, &STUDY, &mut source)?;
+        notes.extend(standard_flow::convert(&mut tree, &source)?);
         let mut settings = Settings::of_study(&tree, &source)?;
+        settings.tables = Arc::new(flow_table::of_study(&mut tree, &source)?);
         notes.extend(meshes::read_first(&mut tree, &mut settings, &source)?);
         let result_limits = result_limits::read(tree.get(LIMITS), &source)?;
         let assumed = assumed::read(tree.get("assumed"), &source)?;

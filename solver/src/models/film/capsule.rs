@@ -58,8 +58,7 @@ pub const LID: &str = "lid";
 /// Name of the plate below packed film.
 pub const BASE: &str = "base";
 
-/// The capsule of a scene in one of its shapes, without contact, at this CFL number; and its mesh. Of film from a mesh:
-/// [`super::any_mesh`].
+/// The capsule of a scene in one of its shapes, without contact, at this CFL number; and its mesh.
 pub fn film_scene(
     instruction_set: InstructionSet,
     scene: &Scene,

@@ -122,6 +122,8 @@ pub struct Measures {
     pub peak_pressure: Option<f64>,
     /// Last T, K.
     pub final_temperature: Option<f64>,
+    /// Gas that left through leak and vent by the end, kg; negative where gas entered there.
+    pub vented_mass: Option<f64>,
     /// Largest principal second Piola-Kirchhoff film stress, Pa.
     pub film_stress: Option<f64>,
     /// Largest lid force, N.
@@ -187,6 +189,7 @@ pub fn measure(
         final_pressure: Some(final_pressure),
         final_overpressure: final_overpressure(history, timeline),
         final_temperature: last("temperature"),
+        vented_mass: vented(time, column("gas_mass"), timeline),
         film_stress: Some(film_stress),
         peak_lid_force: largest(column("lid_force")),
         ..judged.unwrap_or_default()
@@ -267,6 +270,16 @@ fn times(
         ..Measures::default()
     }
 }
+
+/// Gas that left by the end, kg: 0 up to rounding where none can.
+fn vented(time: &[f64], mass: &[f64], timeline: &Timeline) -> Option<f64> {
+    let received = mass.first()? + timeline.schedule.mass_until(*time.last()?);
+    let vented = received - mass.last()?;
+    Some(if vented.abs() <= MASS_ROUNDING * received { 0.0 } else { vented })
+}
+
+/// Rounding of the mass of the gas over what it received, at most.
+const MASS_ROUNDING: f64 = 1e-10;
 
 /// Index and value of the largest value; the first of several.
 pub fn peak(values: &[f64]) -> Option<(usize, f64)> {

@@ -162,6 +162,12 @@ impl Args {
 /// # Errors
 /// Results that cannot be read; an unknown column or parameter; a picture that cannot be written.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
+    if let Some(file) = args.history.iter().find(|name| name.contains(".h5")) {
+        let problem = "is a file, not a column of a history";
+        let allowed = "columns, as in z_rim,pressure, of a study";
+        let next = "billow frames FILE draws the shapes of a history file; docs/guide/results.md reads its columns";
+        return Err(Error::invalid_option("--history", file, problem, allowed, next));
+    }
     let range = [time("--from", args.from.as_deref())?, time("--to", args.to.as_deref())?];
     let out_file = args.out.as_deref().filter(|path| path.extension().is_some() && !path.is_dir());
     if let Some(path) = out_file {

@@ -8,7 +8,7 @@ use super::objects::{
     ROTATION_KEYS, SCENE_WINDOW_KEYS, SPIN_KEYS, START_KEYS, SUPPORT_KEYS,
 };
 use super::study::GRID_MEANINGS;
-use super::study_objects::{CAPSULE_SUPPORT_KEYS, STRATEGY_KEYS, WINDOW_KEYS};
+use super::study_objects::{STRATEGY_KEYS, WINDOW_KEYS};
 use super::table::{SCENE, STUDY, Table};
 use crate::input::value::short_number;
 
@@ -61,7 +61,10 @@ pub(crate) struct Parts {
 
 /// The objects of a study file.
 static STUDY_OBJECTS: &[(&str, &[Key])] = &[
-    ("supports[]", CAPSULE_SUPPORT_KEYS),
+    ("supports[]", SUPPORT_KEYS),
+    ("supports[].body", BODY_KEYS),
+    ("supports[].move", MOVE_KEYS),
+    ("supports[].move.rotation", ROTATION_KEYS),
     ("strategies.<name>", STRATEGY_KEYS),
     ("strategies.<name>.inflow[]", WINDOW_KEYS),
 ];

@@ -6,7 +6,9 @@
 use super::key::Default::{Absent, Integer, Number, Required, Word};
 use super::key::{Key, KeyKind};
 use super::row::{above, from, key, likely, vector};
-use super::study::{CLOCK, FLOW_RATE, KELVIN, SAMPLE_INTERVAL};
+use super::study::{
+    CLOCK, FLOW_RATE, FLOW_TABLE, INFLOW_MASS, KELVIN, ORIFICE_AREA, SAMPLE_INTERVAL, TANK_PRESSURE,
+};
 use super::words::{self, PROFILES, explained, plain, words};
 use crate::input::units::Dimension;
 
@@ -36,9 +38,16 @@ const SUPPORT_TARGETS: &[words::Word] = &[
 pub static SCENE_WINDOW_KEYS: &[Key] = &[
     key("from", CLOCK, Number(0.0), "\"0 s\"", "Start."),
     key("to", CLOCK, Absent("solver.end_time"), "\"0.3 s\"", "End."),
-    key("mass_flow_rate", FLOW_RATE, Required, "\"5 g/s\"",
+    key("mass_flow_rate", FLOW_RATE, Absent("needed without table and tank"), "\"5 g/s\"",
         "Mass flow rate."),
     key("temperature", KELVIN, Number(293.0), "\"293 K\"", "Temperature of the gas let in."),
+    key("mass", INFLOW_MASS, Absent("follows from the end"), "\"1 g\"",
+        "Mass let in, in place of `to`; of a tank, the gas in it."),
+    key("tank_pressure", TANK_PRESSURE, Absent("no tank"), "\"50 bar\"",
+        "Pressure of a tank when it opens, in place of mass_flow_rate: `mass` of gas at `temperature` blows down through \
+         orifice_area, without heat from its wall, until its pressure is gas.ambient_pressure."),
+    key("orifice_area", ORIFICE_AREA, Absent("no tank"), "\"0.5 mm2\"",
+        "Area of the orifice of the tank times its discharge coefficient."),
 ];
 
 /// The keys of `mesh` that hold one value.
@@ -46,7 +55,7 @@ pub static SCENE_WINDOW_KEYS: &[Key] = &[
 pub static MESH_KEYS: &[Key] = &[
     key("positions", KeyKind::Text, Required, "\"bag.obj\"",
         "File of the film at the start, relative to this file: OBJ, STL, PLY, Gmsh (.msh) or FOLD, by its ending; \
-         faces counter-clockwise seen from outside; polygons are cut into triangles. Or {\"obj\": the text of an OBJ file}."),
+         faces counter-clockwise seen from outside; polygons are cut into triangles."),
     key("scale", above(Dimension::Number, 0.0, 1e9), Number(1.0), "0.001",
         "Length of one unit of the mesh files, m."),
     key("unit", KeyKind::Text, Absent("that of scale"), "\"mm\"", "Unit of length of the mesh files, in place of scale."),
@@ -169,12 +178,7 @@ pub(crate) const OBJECT_MEANINGS: &[(&str, &str)] = &[
          A vertex of no film moves with the rim of its faces, which takes its load. Default: none; \
          with gas, a fan over each free edge loop closes an open film.",
     ),
-    (
-        "gas.windows[].table",
-        "Mass flow rate over time, in place of to and mass_flow_rate: points, as in [[\"0 s\", \"0 g/s\"], [\"0.2 s\", \
-         \"5 g/s\"]], linear between them, times counted from `from`; or the name of a CSV file with columns of \
-         both (SI, or units in parentheses in its first line).",
-    ),
+    ("gas.windows[].table", FLOW_TABLE),
     ("supports[].nodes", "Vertices by number, 0 for the first of the file."),
     ("supports[].body", "A rigid plane of this mass that moves along its normal as a free body."),
     ("supports[].move", "A prescribed motion of the nodes."),

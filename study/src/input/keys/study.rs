@@ -110,6 +110,10 @@ pub(super) const FLOW_RATE: KeyKind =
     likely(from(Dimension::MassFlowRate, 0.0, 100.0), 0.0, MAX_PLAUSIBLE_FLOW_RATE);
 /// A mass of gas in a folded capsule, kg.
 pub(super) const GAS_MASS: KeyKind = likely(from(Dimension::Mass, 0.0, 10.0), 0.0, 0.02);
+/// A pressure in a tank, Pa.
+pub(super) const TANK_PRESSURE: KeyKind = likely(above(Dimension::Pressure, 0.0, 1e9), 1e3, 1e8);
+/// An area of an orifice, m².
+pub(super) const ORIFICE_AREA: KeyKind = likely(above(Dimension::Area, 0.0, 1.0), 1e-10, 1e-2);
 /// A mass of gas that a window lets in, kg.
 pub(super) const INFLOW_MASS: KeyKind = likely(above(Dimension::Mass, 0.0, 1e4), 0.0, 1.0);
 /// Longest plausible run, s. Chosen: a deployment takes seconds, a slow one minutes.
@@ -336,4 +340,17 @@ pub(crate) const GRID_MEANINGS: &[(&str, &str)] = &[
         "Condition that a point of the product must meet, as in \"feasible and M >= 3\".",
     ),
     ("strategies.<name>.inflow", "Inflow windows; overlapping ones add up."),
+    ("strategies.<name>.inflow[].table", FLOW_TABLE),
+    ("supports[].nodes", "Of film from a mesh: vertices by number, 0 for the first of the file."),
+    (
+        "supports[].body",
+        "Of film from a mesh: a rigid plane of this mass that moves along its normal as a free body.",
+    ),
+    ("supports[].move", "Of film from a mesh: a prescribed motion of the nodes."),
+    ("supports[].move.rotation", "A rotation about an axis."),
 ];
+
+/// Meaning of a table of an inflow window.
+pub(super) const FLOW_TABLE: &str = "Mass flow rate over time, in place of to and mass_flow_rate: points, as in [[\"0 s\", \"0 g/s\"], [\"0.2 s\", \
+     \"5 g/s\"]], linear between them, times counted from `from`; or the name of a CSV file with columns of both (SI, or \
+     units in parentheses in its first line).";

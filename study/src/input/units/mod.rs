@@ -70,8 +70,8 @@ pub fn parse_powers(text: &str, wanted: Powers) -> Result<f64, String> {
     }
     if STANDARD_FLOWS.contains(&unit) {
         return Err(format!(
-            "{unit} is a volume at a standard state, another mass of each gas: of nitrogen at 0 °C and 1 atm, 1 SLPM is \
-             0.02083 g/s and 1 sccm 0.02083 mg/s"
+            "{unit} is a volume at a standard state, another mass of each gas; write a mass flow rate here: of nitrogen, 1 SLPM \
+             is 0.02083 g/s and 1 sccm 0.02083 mg/s"
         ));
     }
     let scale = symbol::unit(unit)?;
@@ -95,7 +95,7 @@ const FAHRENHEIT: [&str; 3] = ["degF", "°F", "F"];
 const ZERO_FAHRENHEIT: (i128, i32) = (45_967, -2);
 
 /// Units of a flow that is no mass flow.
-const STANDARD_FLOWS: [&str; 5] = ["SLPM", "slpm", "slm", "SCCM", "sccm"];
+pub(crate) const STANDARD_FLOWS: [&str; 5] = ["SLPM", "slpm", "slm", "SCCM", "sccm"];
 
 /// 0 °C in K, 273.15: 27315 hundredths.
 const ZERO_CELSIUS: (i128, i32) = (27_315, -2);

@@ -260,6 +260,9 @@ columns! {
     FinalTemperature "final_temperature" Number ["K"] Measures Neither
         "last gas temperature"
         end => end.measure(|measures| measures.final_temperature);
+    VentedMass "vented_mass" Number ["kg"] Measures Neither
+        "gas that left through leak and vent by the end; negative where gas entered there"
+        end => end.measure(|measures| measures.vented_mass);
     FilmStress "film_stress" Number ["Pa"] Measures Smaller
         "largest principal second Piola-Kirchhoff stress of the film"
         end => end.measure(|measures| measures.film_stress);

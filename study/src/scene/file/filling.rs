@@ -9,7 +9,7 @@ use billow_solver::scene::{GasSupply, HeatTransfer, InflowWindow};
 use super::components::ZERO_VOLUME;
 use super::reader::Reader;
 use super::shape::Shape;
-use super::{Checked, components, flow_table, is_static, seams};
+use super::{Checked, components, flow_table, is_static, seams, tank};
 use crate::input::json::Json;
 use crate::input::keys::SCENE_WINDOW_KEYS;
 use crate::input::object::Object;
@@ -18,6 +18,7 @@ use crate::input::sections::check_window;
 use crate::input::settings::Settings;
 use crate::input::source::{Source, shown};
 use crate::input::value::brief_number;
+use crate::job::heat_capacity;
 use crate::job::surroundings::{Surroundings, of_sphere};
 use crate::platform::error::Result;
 
@@ -79,6 +80,7 @@ pub(super) fn read(
     let initial_temperature = initial_temperature(&supply, settings, source)?;
     supply.initial_mass = initial_mass(&supply, settings, volume, initial_temperature, source)?;
     notes.extend(below_ambient(&supply, volume, initial_temperature));
+    notes.extend(heat_capacity::note(&supply.species));
     notes.extend(air_outside(tree, settings, shape, &supply, source)?);
     Ok(Filling::Gas { supply, initial_temperature })
 }
@@ -193,8 +195,7 @@ fn windows(
             Object::new(json, &path, "an inflow window", SCENE_WINDOW_KEYS, &["table"], source)?;
         let from = window.needed("from")?;
         if let Some(table) = window.given("table") {
-            let beside =
-                ["to", "mass_flow_rate"].into_iter().find(|key| window.given(key).is_some());
+            let beside = flow_table::BESIDE.into_iter().find(|key| window.given(key).is_some());
             if let Some(key) = beside {
                 let problem = "is given beside table, which has all times and rates";
                 return Err(window.error(key, problem, "a table, or one rate").into());
@@ -203,12 +204,32 @@ fn windows(
             windows.extend(flow_table::windows(table, &format!("{path}.table"), start, reader)?);
             continue;
         }
-        let to = window.number("to")?;
-        let to = to.unwrap_or(end_time.max(from));
+        let temperature = window.needed("temperature")?;
+        let tank = tank::Given {
+            mass: window.number("mass")?,
+            tank_pressure: window.number("tank_pressure")?,
+            orifice_area: window.number("orifice_area")?,
+            mass_flow_rate: window.number("mass_flow_rate")?,
+            temperature,
+            from,
+            to: window.number("to")?,
+        };
+        if tank.is_tank() {
+            let outside = settings.needed("gas.ambient_pressure", source)?;
+            windows.extend(tank.windows(&path, &settings.species(source)?, outside, source)?);
+            continue;
+        }
+        let mass_flow_rate = window.needed("mass_flow_rate")?;
+        let to = match (tank.to, tank.mass) {
+            (Some(_), Some(_)) => {
+                let problem = "the window gives both its end and its mass";
+                return Err(window.error("mass", problem, "`to` or `mass`").into());
+            }
+            (None, Some(mass)) if mass_flow_rate > 0.0 => from + mass / mass_flow_rate,
+            (to, _) => to.unwrap_or(end_time.max(from)),
+        };
         let end = window.given("to").map(|_| ("to", format!("{} s", shown(to))));
         check_window(&path, [from, to], end, end_time, source)?;
-        let mass_flow_rate = window.needed("mass_flow_rate")?;
-        let temperature = window.needed("temperature")?;
         windows.push(InflowWindow { from, to, mass_flow_rate, temperature });
     }
     Ok(windows)

@@ -1,18 +1,23 @@
-//! `table` of an inflow window: the mass flow rate over time as points, in the scene or in a CSV file.
+//! `table` of an inflow window: the mass flow rate over time as points, in the scene or the study, or in a CSV file.
 //!
 //! ```text
 //! ṁ(t) is linear from point to point; the run takes each segment as PARTS windows of equal length and constant rate, that
 //! in their middle, so the mass is exact at each of their ends
 //! ```
 
+use std::path::Path;
+
 use billow_solver::scene::InflowWindow;
 
+use super::Checked;
 use super::reader::Reader;
 use crate::input::json::Json;
 use crate::input::keys::{Key, SCENE_WINDOW_KEYS};
+use crate::input::settings::FlowTables;
+use crate::input::source::Source;
 use crate::input::units::{self, Dimension};
 use crate::input::value::Value;
-use crate::platform::error::{InputError, Result};
+use crate::platform::error::{Error, InputError, Result};
 
 /// Windows of a segment. Chosen: the rate is then within a thirtieth of the change of the segment.
 const PARTS: u32 = 16;
@@ -23,13 +28,55 @@ const ALLOWED: &str = "2 to 200 points of ascending time, as in [[\"0 s\", \"0 g
                        name of a CSV file with two columns: time (s), mass_flow_rate (kg/s); other units stand in \
                        parentheses in its first line";
 
+/// The tables of the inflow windows of a study, by strategy and window, their times counted from the start of the window.
+/// A CSV file becomes points in the study, so that a results folder needs no other file.
+///
+/// # Errors
+/// A file that cannot be read; a table that is none; a table beside other keys of an inflow.
+pub(crate) fn of_study(tree: &mut Json, source: &Source) -> Checked<FlowTables> {
+    let mut tables = FlowTables::new();
+    let Some(Json::Object(strategies)) = tree.get_mut("strategies") else { return Ok(tables) };
+    let path = Path::new(&source.file);
+    let mut reader = Reader { source: source.clone(), ..Reader::new(path) };
+    for (name, strategy) in strategies {
+        let Some(Json::List(windows)) = strategy.get_mut("inflow") else { continue };
+        for (index, window) in windows.iter_mut().enumerate() {
+            let key = format!("strategies.{name}.inflow[{index}].table");
+            let beside = BESIDE.iter().find(|key| window.get(key).is_some()).copied();
+            let Some(table) = window.get_mut("table") else { continue };
+            if let Some(beside) = beside {
+                let problem = format!("is given beside {beside}: it has all times and rates");
+                return Err(source.error(&key, &*table, problem, "a table, or one rate"));
+            }
+            let points = points(table, &key, &mut reader).map_err(|error| match error {
+                Error::Input(error) => error,
+                other => source.error(&key, &*table, other.to_string(), ALLOWED),
+            })?;
+            let json = |x: f64| Json::Number(x);
+            let stored = points.iter().map(|point| Json::List(point.map(json).to_vec()));
+            *table = Json::List(stored.collect());
+            tables.insert((name.clone(), index), windows_of(&points, [0.0, 0.0]));
+        }
+    }
+    Ok(tables)
+}
+
+/// Keys of an inflow window that a table takes the place of.
+pub(super) const BESIDE: [&str; 5] =
+    ["to", "mass_flow_rate", "mass", "tank_pressure", "orifice_area"];
+
 /// The windows of a table that a key names, its times counted from `start` (s), of gas at this temperature (K).
 pub(super) fn windows(
     json: &Json,
     key: &str,
-    [start, temperature]: [f64; 2],
+    start: [f64; 2],
     reader: &mut Reader,
 ) -> Result<Vec<InflowWindow>> {
+    Ok(windows_of(&points(json, key, reader)?, start))
+}
+
+/// The points of a table that a key names: time (s) and mass flow rate (kg/s).
+fn points(json: &Json, key: &str, reader: &mut Reader) -> Result<Vec<[f64; 2]>> {
     let points = match json {
         Json::Text(name) => {
             let bytes = reader.bytes(key, name)?;
@@ -63,6 +110,11 @@ pub(super) fn windows(
     if let Some(rate) = SCENE_WINDOW_KEYS.iter().find(|known| known.path == "mass_flow_rate") {
         rate.value(&Json::Number(largest), key, &reader.source)?;
     }
+    Ok(points)
+}
+
+/// The windows between points, their times counted from `start` (s), of gas at this temperature (K).
+fn windows_of(points: &[[f64; 2]], [start, temperature]: [f64; 2]) -> Vec<InflowWindow> {
     let mut windows = Vec::new();
     for pair in points.windows(2) {
         let [[t, a], [end, b]] = [pair[0], pair[1]];
@@ -74,7 +126,7 @@ pub(super) fn windows(
             windows.push(InflowWindow { from, to, mass_flow_rate, temperature });
         }
     }
-    Ok(windows)
+    windows
 }
 
 fn refused(key: &str, json: &Json, problem: String, reader: &Reader) -> InputError {

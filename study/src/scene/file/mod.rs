@@ -12,7 +12,7 @@ mod contact;
 mod cut;
 pub mod design_mesh;
 mod filling;
-mod flow_table;
+pub(crate) mod flow_table;
 mod formats;
 mod judge;
 mod memory;
@@ -26,6 +26,7 @@ mod selection;
 mod shape;
 mod start;
 mod supports;
+pub(crate) mod tank;
 mod weld;
 
 use std::path::Path;
@@ -46,7 +47,7 @@ use crate::input::sections::{check_sample_interval, check_version};
 use crate::input::settings::Settings;
 use crate::input::source::Source;
 use crate::input::value::Value;
-use crate::input::{study_file, syntax};
+use crate::input::{standard_flow, study_file, syntax};
 use crate::job::canonical_json;
 use crate::job::memory::bending;
 use crate::platform::error::{Error, InputError, Result};
@@ -141,7 +142,8 @@ impl SceneFile {
             return Err(source.error("", "", problem, "one JSON object: {\"mesh\": …}").into());
         }
         refuse_study(&tree, &file, &source)?;
-        let notes = overrides::apply(&mut tree, sets, &SCENE, &mut source)?;
+        let mut notes = overrides::apply(&mut tree, sets, &SCENE, &mut source)?;
+        notes.extend(standard_flow::convert(&mut tree, &source)?);
         let mut reader = Reader { source, ..Reader::new(path) };
         Self::read(&tree, notes, &mut reader, instruction_set)
     }
