@@ -183,6 +183,8 @@ fn a_bag_that_no_run_can_start_from_is_refused_with_its_key() {
     refused(&design(json!({"N": 6})), &sound, &["design.N", "beside mesh"]);
     refused(&design(json!({"unit": "kg"})), &sound, &["design.mesh.unit", "unit of length"]);
     refused(&design(json!({"mesh": "bug.obj"})), &sound, &["did you mean bag.obj?"]);
+    let inside = json!({"mesh": {"positions": "bag.obj", "subdivisions": 2}});
+    refused(&design(inside), &sound, &["design.mesh.subdivisions", "design.subdivisions"]);
     refused(&design(json!({"mesh": 3})), &sound, &["design.mesh", "is not a mesh"]);
     refused(&of("grid", json!({"N": [4, 6]})), &sound, &["grid.N", "design.mesh"]);
     refused(

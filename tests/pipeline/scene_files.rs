@@ -323,7 +323,7 @@ fn size_stretch_place_and_step_are_judged_before_a_run() {
     let output = solve(folder.path(), &["scene.json"], "");
     let text = stderr(&output);
     assert_eq!(output.status.code(), Some(1), "{text}");
-    assert!(text.contains("overstretched") && text.contains("mesh.scale"), "{text}");
+    assert!(text.contains("overstretched") && text.contains("mesh.unit"), "{text}");
     // A reference in millimetres, and one that is too small.
     for (scale, text) in [(1000.0, "slack everywhere"), (0.8, "stretched to 1.25")] {
         let reference = block([scale; 3], [0.0; 3], true, 1);

@@ -30,7 +30,7 @@ pub struct Scene {
     /// Seed of the imperfection of the stowed shape. A model without imperfection ignores it.
     pub seed: u64,
     /// Amplitude of this imperfection, m; `None` for the default of the design
-    /// ([`crate::models::film::reference_gap`]) or of the mesh ([`super::MeshFilm::default_amplitude`]).
+    /// ([`crate::models::film::reference_gap`]) or of the mesh ([`super::MeshFilm`]).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub imperfection_amplitude: Option<f64>,
 }

@@ -43,6 +43,8 @@ pub struct MeshFilm {
     pub supports: Vec<FilmSupport>,
     /// Contact distance where the scene gives none, m.
     pub contact_distance: f64,
+    /// Amplitude of the imperfection where the scene gives none, m: the same on finer meshes of a file.
+    pub imperfection_amplitude: f64,
     /// Pairs of elements without contact: they touch at the start.
     pub ignored: Vec<[u32; 2]>,
 }
@@ -73,17 +75,6 @@ impl<'de> Deserialize<'de> for Design {
 impl From<FoldDesign> for Design {
     fn from(design: FoldDesign) -> Self {
         Self::Capsule(design)
-    }
-}
-
-/// Default amplitude of the imperfection over the contact distance of the mesh. Chosen: as that of a capsule
-/// ([`crate::models::film::reference_gap`]).
-const AMPLITUDE_PER_DISTANCE: f64 = 0.5;
-
-impl MeshFilm {
-    /// Amplitude of the imperfection where a scene gives none, m.
-    pub fn default_amplitude(&self) -> f64 {
-        AMPLITUDE_PER_DISTANCE * self.contact_distance
     }
 }
 

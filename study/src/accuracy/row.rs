@@ -163,9 +163,20 @@ pub fn of_pilots(gap: &str, meshes: &[u32], verdicts_agree: bool) -> String {
     format!("{OF_PILOTS} (n {}){differ}; outside the table: {gap}", meshes.join(", "))
 }
 
+/// The reason of a row of film from a mesh that has an error from these meshes; `verdicts_agree`: whether its runs on all
+/// have one verdict.
+pub fn of_meshes(meshes: &[u32], verdicts_agree: bool) -> String {
+    let meshes: Vec<String> = meshes.iter().map(ToString::to_string).collect();
+    let differ = if verdicts_agree { "" } else { VERDICTS_DIFFER };
+    format!("{OF_MESHES} of n {}{differ}", meshes.join(", "))
+}
+
+/// What stands before the reason of such a row.
+const OF_MESHES: &str = "the grid convergence index";
+
 /// Whether a reason says that the mesh errors of a row are not known.
 pub fn is_unknown(reason: &str) -> bool {
-    reason != NOT_DEPLOYED && !is_of_pilots(reason)
+    reason != NOT_DEPLOYED && !is_of_pilots(reason) && !reason.starts_with(OF_MESHES)
 }
 
 /// Whether it says that pilots gave them.

@@ -56,11 +56,17 @@ impl<'a> Source<'a> {
     pub(super) fn uncertainty_legend(&self, measure: &Column) -> Option<Legend> {
         let has_error = self.rows.iter().any(|row| self.uncertainty(measure, *row).is_some());
         let finest = MeshErrors::shipped().finest;
-        let meaning = format!("mesh (to n {finest}, 19 of 20 runs) and what is assumed");
-        let outside = self.table.column(NO_ERROR_REASON).is_some_and(|reasons| {
-            let has_error = |row: &&usize| self.uncertainty(measure, **row).is_some();
-            self.rows.iter().filter(has_error).any(|row| reasons.cells[*row] != Value::Null)
-        });
+        let of_file = self.runs.is_some_and(|runs| runs.meshes.of_file);
+        let meaning = if of_file {
+            "mesh (grid convergence index) and what is assumed".to_owned()
+        } else {
+            format!("mesh (to n {finest}, 19 of 20 runs) and what is assumed")
+        };
+        let outside = !of_file
+            && self.table.column(NO_ERROR_REASON).is_some_and(|reasons| {
+                let has_error = |row: &&usize| self.uncertainty(measure, **row).is_some();
+                self.rows.iter().filter(has_error).any(|row| reasons.cells[*row] != Value::Null)
+            });
         let other = "; outside the table from three meshes, or pilots";
         let meaning = format!("{meaning}{}", if outside { other } else { "" });
         let entries = vec![(Sample::Error, meaning)];

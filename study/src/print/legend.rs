@@ -99,6 +99,12 @@ pub fn mesh_errors(shown: Option<&str>, table: &Table, meshes: &Meshes) -> Vec<S
                 .to_owned(),
         );
     }
+    if shown.is_some() && meshes.of_file {
+        notes.push(
+            "what is assumed (film loss, heat transfer) changes film from a mesh as it does a folded capsule: measured on these"
+                .to_owned(),
+        );
+    }
     let Some(gap) = gaps.first() else { return notes };
     let on_all = if meshes.of_pilots { 0 } else { meshes.list.len() };
     let from_mesh = *gap == OF_CAPSULES;

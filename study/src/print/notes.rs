@@ -46,7 +46,10 @@ fn of_points(study: &Study) -> Vec<String> {
     lines.extend(limits_without_error(study));
     let given = |meshes: Meshes| !meshes.list.is_empty() && !meshes.of_pilots;
     let subdivisions = study.key(MESH_PARAMETER).filter(|_| given(study.meshes()));
-    if let Some(given) = subdivisions.filter(|key| key.value != key.key.default_value()) {
+    if let Some(given) = subdivisions.filter(|key| {
+        let default = if study.has_mesh() { Value::Integer(1) } else { key.key.default_value() };
+        key.value != default
+    }) {
         lines.push(format!("note: solver.meshes replaces design.subdivisions {}", given.value));
     }
     let empty = |point: &&Point| {
@@ -60,6 +63,7 @@ fn of_points(study: &Study) -> Vec<String> {
             study.points().len()
         ));
     }
+    lines.extend(without_imperfection(study));
     lines.extend(below_ambient(study));
     lines.extend(air_outside(study));
     let heat =
@@ -115,12 +119,28 @@ fn single_runs(study: &Study) -> Option<String> {
     })
 }
 
+/// Film from a mesh that starts as its file has it: often more even than any real one.
+fn without_imperfection(study: &Study) -> Option<String> {
+    let even = study.points().iter().all(|point| point.job.scene.seed == 0);
+    (study.has_mesh() && even).then(|| {
+        "note: the film starts as its file has it, without imperfection, and no error counts that; \"replicates\": \
+         {\"seed\": 3} shows how much small differences change"
+            .to_owned()
+    })
+}
+
 /// The errors of values from several meshes, or why there are none.
 fn of_meshes(study: &Study) -> Option<String> {
     let meshes = study.meshes();
     let [.., next, finest] = meshes.list[..] else { return None };
     if meshes.of_pilots {
         return None;
+    }
+    if meshes.of_file {
+        return Some(format!(
+            "note: each point has the values of n {finest}, with an error from n {} (grid convergence index)",
+            meshes_text(&meshes.list)
+        ));
     }
     let method = Method { model: ModelKind::Film, meshes: vec![next, finest] };
     let scenes: Vec<_> = study.points().iter().filter_map(features).collect();

@@ -42,6 +42,15 @@ pub(super) fn find(
         let problem = "is not a key of that strategy";
         return Err(source.error(path, value, problem, allowed));
     }
+    if ["mesh", "design.mesh", "unit", "design.unit"].contains(&name) {
+        let problem = "is read once for all points";
+        return Err(source.error(
+            path,
+            value,
+            problem,
+            "a study for each mesh; subdivisions can vary",
+        ));
+    }
     let same_leaf: Vec<&str> =
         KEYS.iter().filter(|key| key.leaf() == name).map(|key| key.path).collect();
     if same_leaf.len() > 1 {

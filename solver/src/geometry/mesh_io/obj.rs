@@ -27,19 +27,27 @@ pub fn mesh(mesh: &Mesh, title: &str) -> String {
     text
 }
 
-/// A surface as OBJ with these vertex positions (m), in the order of its vertices.
+/// A surface as OBJ with these vertex positions (m), in the order of its vertices, and its texture coordinates.
 pub fn surface(surface: &Surface, positions: &[Vector3<f64>], title: &str) -> String {
     let mut text = header(title);
     for position in positions {
         vertex(&mut text, *position);
     }
+    for [u, v] in &surface.texture {
+        let _ = writeln!(text, "vt {u} {v}");
+    }
     let mut group = None;
-    for Face { corners, names, .. } in &surface.faces {
+    for Face { corners, names, texture, .. } in &surface.faces {
         if group != Some(*names) {
             group = Some(*names);
             let _ = writeln!(text, "g {}", surface.names[*names].join(" "));
         }
-        face(&mut text, corners);
+        if texture.len() != corners.len() {
+            face(&mut text, corners);
+            continue;
+        }
+        let both = corners.iter().zip(texture).map(|(v, t)| format!(" {}/{}", v + 1, t + 1));
+        let _ = writeln!(text, "f{}", both.collect::<Vec<_>>().concat());
     }
     text
 }

@@ -221,6 +221,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::geometry::mesh_io::obj;
 
     #[test]
     fn common_obj_syntax_is_read() {
@@ -238,6 +239,20 @@ mod tests {
         let names = |face: usize| surface.names[surface.faces[face].names].clone();
         assert_eq!(names(0), ["Bag one"]);
         assert_eq!(names(2), ["lid", "top", "Bag one"]);
+    }
+
+    #[test]
+    fn a_surface_that_is_written_is_read_back() {
+        let text = "v 0.1 0 0\nv 1 1e-7 0\nv 1 1 0\nv 0 1 -3\nvt 0 0.5\nvt 1 0\nvt 0.3 1\ng a b\nf 1/1 2/2 3/3\ng c\nf 1 3 4\n";
+        let surface = read(text).unwrap();
+        let again = read(&obj::surface(&surface, &surface.vertices, "again")).unwrap();
+        assert_eq!((&again.vertices, &again.texture), (&surface.vertices, &surface.texture));
+        let faces = |surface: &Surface| -> Vec<_> {
+            let names = |face: &Face| surface.names[face.names].clone();
+            let faces = surface.faces.iter();
+            faces.map(|face| (face.corners.clone(), face.texture.clone(), names(face))).collect()
+        };
+        assert_eq!(faces(&again), faces(&surface));
     }
 
     #[test]

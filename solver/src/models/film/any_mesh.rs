@@ -18,7 +18,7 @@ pub(super) fn at_start(
 ) -> Result<FilmScene, SceneError> {
     scene.validate()?;
     let mut shell = film.shell.clone();
-    let amplitude = scene.imperfection_amplitude.unwrap_or(film.default_amplitude());
+    let amplitude = scene.imperfection_amplitude.unwrap_or(film.imperfection_amplitude);
     let mut held = vec![false; shell.positions.len()];
     for node in film.supports.iter().flat_map(|support| &support.nodes) {
         held[*node as usize] = true;

@@ -58,7 +58,7 @@ fn lengths(scene: &Scene) -> Option<[Option<f64>; 2]> {
         Design::Mesh(design) => {
             let film = &design.film;
             let distance = scene.contact.distance.unwrap_or(film.contact_distance);
-            [Some(distance), (seed > 0).then(|| given.unwrap_or(film.default_amplitude()))]
+            [Some(distance), (seed > 0).then(|| given.unwrap_or(film.imperfection_amplitude))]
         }
     })
 }

@@ -101,6 +101,16 @@ fn limits(study: &Study) -> Vec<String> {
                 .to_owned(),
         );
     }
+    let of_rings = limits.iter().map(|limit| limit.measure).filter(|_| study.has_mesh());
+    for measure in of_rings.filter(|measure| measure.needs_rings()) {
+        let other = measure.without_rings();
+        let instead =
+            if other == measure { String::new() } else { format!("; it has {}", other.name()) };
+        notes.push(format!(
+            "note: film from a mesh has no {}, so no point can be judged{instead}",
+            measure.name()
+        ));
+    }
     let points: Vec<ModelKind> =
         study.points().iter().map(|point| point.job.scene.solver.model).collect();
     for model in MODELS {

@@ -314,8 +314,8 @@ pub static KEYS: &[Key] = &[
     key("seed", KeyKind::Integer(0, MAX_EXACT_INTEGER), Integer(0), "1",
         "Seed of the imperfection of the stowed shape. Models without one ignore it."),
     key("imperfection_amplitude", likely(above(Dimension::Length, 0.0, 0.1), 1e-9, 0.02),
-        Absent("0.2 of the design's reference gap"), "\"0.15 mm\"",
-        "Amplitude of the imperfection: its largest displacement, along z. Equal displacements on \
+        Absent("0.2 of the design's reference gap; of film from a mesh half of its contact distance"), "\"0.15 mm\"",
+        "Amplitude of the imperfection: its largest displacement, of a capsule along z. Equal displacements on \
          every mesh of a design. Seed 0 has none."),
 ];
 

@@ -81,10 +81,17 @@ fn print_topic(topic: &str, texts: &[String], out: &mut dyn Write) -> io::Result
 }
 
 /// The worst values of what is limited, the fastest job, and the highest kinetic energy and velocity. Values of one job
-/// stand in one line.
+/// stand in one line; those of a single job are neither best nor worst.
 fn print_extremes(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     let is_shown = |extreme: &&Extreme| answer.worst.iter().all(|w| w.measure != extreme.measure);
     let hardest = answer.most_energy.iter().chain(&answer.hardest).filter(is_shown);
+    if answer.counts.jobs() == 1 {
+        let fastest = answer.fastest.iter().filter(is_shown);
+        let all: Vec<&Extreme> = answer.worst.iter().chain(fastest).chain(hardest).collect();
+        let values: Vec<String> = all.iter().map(|extreme| value_text(extreme)).collect();
+        let Some(first) = all.first() else { return Ok(()) };
+        return writeln!(out, "  measured {}: {}", values.join(", "), job_text(first));
+    }
     for (mut topic, extremes) in [
         ("worst", answer.worst.iter().collect::<Vec<_>>()),
         ("fastest", answer.fastest.iter().filter(is_shown).collect()),

@@ -22,7 +22,7 @@ use super::components::ZERO_VOLUME;
 use super::contact::Start;
 use super::memory::Needs;
 use super::reader::Reader;
-use super::{Checked, conflicts, contact, filling, judge, mesh, scene_error, supports};
+use super::{Checked, conflicts, contact, far_away, filling, judge, mesh, scene_error, supports};
 use crate::input::json::Json;
 use crate::input::sections::has_mesh;
 use crate::input::settings::Settings;
@@ -30,6 +30,9 @@ use crate::input::source::Source;
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::memory;
 
+/// Default amplitude of the imperfection over the contact distance of the mesh as its file has it. Chosen: as that of a
+/// capsule.
+const AMPLITUDE_PER_DISTANCE: f64 = 0.5;
 /// Keys of `design` beside `mesh`.
 const BESIDE: [&str; 3] = ["mesh", "unit", "subdivisions"];
 
@@ -99,6 +102,10 @@ fn as_object(design: &Json, source: &Source) -> Checked<Json> {
             return Err(source.error("design.mesh", other, "is not a mesh", allowed));
         }
     };
+    if let Some(n) = mesh.get("subdivisions") {
+        let (key, problem) = ("design.mesh.subdivisions", "is that of a scene");
+        return Err(source.error(key, n, problem, "design.subdivisions, which the grid can vary"));
+    }
     if let Some(unit) = design.get("unit") {
         mesh.set("unit", unit.clone());
     }
@@ -132,7 +139,8 @@ fn film(
         film: settings.film(&source)?,
         filling: Filling::Pressure(0.0),
         supports,
-        contact: Some(FilmContact::of(&settings.contact(&source)?)),
+        // A distance that a study gives belongs to its points.
+        contact: Some(FilmContact::default()),
         gravity: Vector3::zeros(),
         release_time: 0.0,
         solver: FilmSolver {
@@ -152,12 +160,11 @@ fn film(
         },
     };
     let numbering = &shape.numbering;
+    notes.extend(far_away(numbering.origin));
     mesh::check_closure(&film, numbering, &source)?;
     notes.extend(judge::notes(&film, numbering, mesh::has_reference(json), &source)?);
-    // A distance that a study gives belongs to its points.
     let start =
         Start { may_touch: true, may_cross: false, allowed: "a gap between layers, however small" };
-    film.contact = Some(FilmContact::default());
     contact::settle_start(&mut film, start, numbering, &mut notes, &source)?;
     let (system, ..) = capsule::constants(&film).map_err(|error| scene_error(error, &source))?;
     let contact_distance = system.contact.map_or(0.0, |contact| contact.distance);
@@ -167,6 +174,13 @@ fn film(
         unstressed,
         supports: film.supports,
         contact_distance,
+        imperfection_amplitude: settings
+            .meshes
+            .values()
+            .next()
+            .map_or(AMPLITUDE_PER_DISTANCE * contact_distance, |first| {
+                first.film.imperfection_amplitude
+            }),
         ignored,
     };
     let design = MeshDesign { hash: hash(&film), subdivisions: n, film: Arc::new(film) };
@@ -178,6 +192,10 @@ fn in_design(mut error: InputError) -> InputError {
     if error.key == "mesh" || error.key.starts_with("mesh.") {
         error.key.insert_str(0, "design.");
     }
+    if error.hint.contains(" mesh.weld") {
+        error.hint.push_str("; design.mesh is then an object, {\"positions\": FILE, \"weld\": …}");
+    }
+    error.hint = error.hint.replace(" mesh.", " design.mesh.");
     error
 }
 
@@ -194,7 +212,7 @@ fn encloses(shell: &Shell, positions: &[Vector3<f64>]) -> bool {
 
 /// Hash of all that decides a run of the film.
 fn hash(film: &MeshFilm) -> String {
-    let MeshFilm { shell, unstressed, supports, contact_distance, ignored } = film;
+    let MeshFilm { shell, unstressed, supports, contact_distance, ignored, .. } = film;
     let Shell { positions, triangles, reference, closure, walls, folds } = shell;
     let mut hasher = Sha256::new();
     let mut list = |name: &str, bytes: &mut dyn Iterator<Item = [u8; 8]>| {
@@ -218,7 +236,9 @@ fn hash(film: &MeshFilm) -> String {
     list("walls", &mut apexes.map(u64::to_le_bytes));
     list("folds", &mut folds.iter().flat_map(pairs));
     list("unstressed", &mut unstressed.iter().flatten().flat_map(numbers));
-    list("contact_distance", &mut [contact_distance.to_le_bytes()].into_iter());
+    // The amplitude too: with a seed it decides the start.
+    let lengths = [*contact_distance, film.imperfection_amplitude].map(f64::to_le_bytes);
+    list("lengths", &mut lengths.into_iter());
     list("ignored", &mut ignored.iter().flat_map(pairs));
     // The text of a support has every number in its shortest digits.
     hasher.update(format!("{supports:?}"));

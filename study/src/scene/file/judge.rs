@@ -52,13 +52,14 @@ pub(super) fn notes(
 fn size(film: &FilmScene) -> Option<String> {
     let [low, high] = extents(&film.shell.positions);
     let size = (high - low).max();
-    let (is, scale) = match size {
-        size if size > MAX_SIZE => ("large", "1e-3 for millimetres"),
-        size if size < MIN_SIZE => ("large, no more", "1000 for kilometres"),
+    let is = match size {
+        size if size > MAX_SIZE => "large",
+        size if size < MIN_SIZE => "large, no more",
         _ => return None,
     };
     Some(format!(
-        "the film is {} m {is}: if its file has another unit than metres, set mesh.scale, as in {scale}",
+        "the film is {} m {is}: if its file has another unit than metres, give it, as in \"unit\": \"mm\" (mesh.unit; in a \
+         study design.unit)",
         shown(size)
     ))
 }

@@ -197,13 +197,7 @@ impl SceneFile {
         for plate in contact.iter_mut().flat_map(|contact| &mut contact.plates) {
             plate.point -= origin;
         }
-        if origin != Vector3::zeros() {
-            let origin = <[f64; 3]>::from(origin);
-            notes.push(format!(
-                "the film is far from the origin of its file: the run and its results count from {origin:?} m; --shape has \
-                 the coordinates of the file"
-            ));
-        }
+        notes.extend(far_away(origin));
         if contact.is_none() && !statics && shape.folded {
             notes
                 .push("contact is off: film passes through film, and it is not counted".to_owned());
@@ -255,6 +249,17 @@ impl SceneFile {
             notes,
         })
     }
+}
+
+/// A note where the coordinates of the run begin elsewhere than those of the file.
+fn far_away(origin: Vector3<f64>) -> Option<String> {
+    let at = <[f64; 3]>::from(origin);
+    (origin != Vector3::zeros()).then(|| {
+        format!(
+            "the film is far from the origin of its file: the run and its results count from {at:?} m; --shape of \
+             billow solve has the coordinates of the file"
+        )
+    })
 }
 
 fn refuse_study(tree: &Json, file: &str, source: &Source) -> Result<()> {

@@ -18,7 +18,7 @@ use crate::platform::hash::bytes_hash;
 const MAX_MESH_SIZE: u64 = 1 << 30;
 
 /// Next step after a file that cannot be read.
-const RELATIVE: &str = "\n  next: paths in a scene are relative to the scene file";
+const RELATIVE: &str = "\n  next: paths in a file are relative to it";
 
 /// Where a scene's values and files come from.
 pub(crate) struct Reader {

@@ -22,7 +22,8 @@ use billow_solver::scene::Scene;
 use super::same_job::point_rows;
 use super::{Column, Table};
 use crate::accuracy::promised::promise;
-use crate::accuracy::{Features, MeshErrors, Method, PROMISED, Promised};
+use crate::accuracy::row::of_meshes;
+use crate::accuracy::{Features, MeshErrors, Method, NO_ERROR_REASON, PROMISED, Promised};
 use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::value::Value;
 use crate::job::JobId;
@@ -73,10 +74,33 @@ impl Table {
         let meshes = study.meshes();
         let of_study = study.mesh_of_pilots();
         let mut table = table.with_extrapolated(points, &meshes.list, of_study);
+        if meshes.of_file && !meshes.of_pilots {
+            table.say_meshes(&meshes.list);
+        }
         if let Some(mesh) = of_study {
             table = table.with_pilots(points, &meshes.list, mesh);
         }
         table.judged(study.result_limits())
+    }
+
+    /// Says in the rows of film from a mesh that ran on all of these meshes where their error comes from.
+    fn say_meshes(&mut self, meshes: &[u32]) {
+        let mut reasons = Vec::new();
+        for rows in self.rows_by_mesh().values() {
+            let all: Option<Vec<usize>> = meshes.iter().map(|n| rows.get(n).copied()).collect();
+            let Some(all) = all.filter(|all| all.len() > 1) else { continue };
+            if all.iter().all(|row| self.is_trusted(*row)) {
+                let first = self.verdict(all[0]);
+                let agree = first.is_some() && all.iter().all(|row| self.verdict(*row) == first);
+                reasons.extend(all.into_iter().map(|row| (row, of_meshes(meshes, agree))));
+            }
+        }
+        let column = self.columns.iter_mut().find(|column| column.name == NO_ERROR_REASON);
+        if let Some(column) = column {
+            for (row, reason) in reasons {
+                column.cells[row] = Value::Text(reason);
+            }
+        }
     }
 
     /// The table with the values extrapolated from these meshes, coarsest first, and their errors. `points` are those of
