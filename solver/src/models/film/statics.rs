@@ -2,7 +2,8 @@
 //! that, else from its start.
 //!
 //! The bottom ring starts on its erected circle and moves to the stowed polygon on which a run holds it,
-//! so both have the same supports; held nodes of other film likewise. Pressures descend; each equilibrium starts from the previous one.
+//! so both have the same supports; held nodes of other film likewise. Pressures descend; each equilibrium starts from the
+//! previous one.
 //! Without gravity, so that a design has the same reference on the ground and in orbit. The film's
 //! compression fraction is 0. [`crate::statics::settle`] finds each equilibrium.
 

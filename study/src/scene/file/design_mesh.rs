@@ -14,6 +14,7 @@ use billow_solver::models::film::capsule;
 use billow_solver::platform::seal::hexadecimal;
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::film_scene::{Filling, FilmContact, FilmOutputs, FilmScene, FilmSolver};
+use billow_solver::scene::film_support::{FilmSupport, Hold};
 use billow_solver::scene::{MeshDesign, MeshFilm};
 use nalgebra::Vector3;
 use sha2::{Digest, Sha256};
@@ -126,7 +127,9 @@ fn film(
     let supports = supports::read(tree, settings, &shape, &source)?;
     filling::closed(&mut shape, &supports, &mut notes, &source)?;
     conflicts::check(&supports, &shape, &source)?;
-    let is_moved = supports.iter().any(|support| support.motion.is_some());
+    let moves =
+        |support: &FilmSupport| support.motion.is_some() || matches!(support.hold, Hold::Body(_));
+    let is_moved = supports.iter().any(moves);
     let unstressed = unstressed.filter(|positions| {
         !is_moved
             && positions.len() == shape.shell.positions.len()
