@@ -22,6 +22,15 @@ const WAVES: usize = 6;
 /// Most waves along the size of film that is no capsule, in one direction. Chosen: as in a capsule.
 const MAX_WAVES: f64 = 4.0;
 
+/// The numbers in [0, 1) that a seed draws, one after the other.
+fn draws(seed: u64) -> impl FnMut() -> f64 {
+    let mut drawn = 0;
+    move || {
+        drawn += 1;
+        unit(hash(seed, drawn))
+    }
+}
+
 /// Adds the imperfection of a seed to stowed positions (m); `amplitude`: its largest value (m) at the
 /// `reference` positions (m).
 pub fn imperfect(
@@ -37,11 +46,7 @@ pub fn imperfect(
     if !valid {
         return;
     }
-    let mut drawn = 0;
-    let mut draw = || {
-        drawn += 1;
-        unit(hash(seed, drawn))
-    };
+    let mut draw = draws(seed);
     let full_turn = 2.0 * core::f64::consts::PI;
     let waves: Vec<[f64; 4]> = (0..WAVES)
         .map(|_| {
@@ -73,11 +78,7 @@ pub fn displace(positions: &mut [Vector3<f64>], held: &[bool], seed: u64, amplit
     if !valid {
         return;
     }
-    let mut drawn = 0;
-    let mut draw = || {
-        drawn += 1;
-        unit(hash(seed, drawn))
-    };
+    let mut draw = draws(seed);
     let full_turn = 2.0 * core::f64::consts::PI;
     let waves: Vec<(Vector3<f64>, f64, Vector3<f64>)> = (0..WAVES)
         .map(|_| {

@@ -6,9 +6,7 @@
 use super::key::Default::{Absent, Integer, Number, Required, Word};
 use super::key::{Key, KeyKind};
 use super::row::{above, from, key, likely, vector};
-use super::study::{
-    CLOCK, FLOW_RATE, FLOW_TABLE, INFLOW_MASS, KELVIN, ORIFICE_AREA, SAMPLE_INTERVAL, TANK_PRESSURE,
-};
+use super::study::{CLOCK, FLOW_RATE, FLOW_TABLE, INFLOW_MASS, KELVIN, SAMPLE_INTERVAL, TANK};
 use super::words::{self, PROFILES, explained, plain, words};
 use crate::input::units::Dimension;
 
@@ -43,11 +41,8 @@ pub static SCENE_WINDOW_KEYS: &[Key] = &[
     key("temperature", KELVIN, Number(293.0), "\"293 K\"", "Temperature of the gas let in."),
     key("mass", INFLOW_MASS, Absent("follows from the end"), "\"1 g\"",
         "Mass let in, in place of `to`; of a tank, the gas in it."),
-    key("tank_pressure", TANK_PRESSURE, Absent("no tank"), "\"50 bar\"",
-        "Pressure of a tank when it opens, in place of mass_flow_rate: `mass` of gas at `temperature` blows down through \
-         orifice_area, without heat from its wall, until its pressure is gas.ambient_pressure."),
-    key("orifice_area", ORIFICE_AREA, Absent("no tank"), "\"0.5 mm2\"",
-        "Area of the orifice of the tank times its discharge coefficient."),
+    TANK[0],
+    TANK[1],
 ];
 
 /// The keys of `mesh` that hold one value.

@@ -110,16 +110,22 @@ pub(super) const FLOW_RATE: KeyKind =
     likely(from(Dimension::MassFlowRate, 0.0, 100.0), 0.0, MAX_PLAUSIBLE_FLOW_RATE);
 /// A mass of gas in a folded capsule, kg.
 pub(super) const GAS_MASS: KeyKind = likely(from(Dimension::Mass, 0.0, 10.0), 0.0, 0.02);
-/// A pressure in a tank, Pa.
-pub(super) const TANK_PRESSURE: KeyKind = likely(above(Dimension::Pressure, 0.0, 1e9), 1e3, 1e8);
-/// An area of an orifice, m².
-pub(super) const ORIFICE_AREA: KeyKind = likely(above(Dimension::Area, 0.0, 1.0), 1e-10, 1e-2);
 /// A mass of gas that a window lets in, kg.
 pub(super) const INFLOW_MASS: KeyKind = likely(above(Dimension::Mass, 0.0, 1e4), 0.0, 1.0);
 /// Longest plausible run, s. Chosen: a deployment takes seconds, a slow one minutes.
 const MAX_PLAUSIBLE_TIME: f64 = 300.0;
 /// Largest plausible mass flow rate, kg/s. Chosen: it fills a capsule of 1 m3 in milliseconds.
 const MAX_PLAUSIBLE_FLOW_RATE: f64 = 0.5;
+
+/// The keys of a tank, of an inflow window.
+#[rustfmt::skip]
+pub(super) const TANK: [Key; 2] = [
+    key("tank_pressure", likely(above(Dimension::Pressure, 0.0, 1e9), 1e3, 1e8), Absent("no tank"), "\"50 bar\"",
+        "Pressure of a tank when it opens, in place of mass_flow_rate: `mass` of gas at `temperature` blows down through \
+         orifice_area, without heat from its wall, until its pressure is gas.ambient_pressure."),
+    key("orifice_area", likely(above(Dimension::Area, 0.0, 1.0), 1e-10, 1e-2), Absent("no tank"), "\"0.5 mm2\"",
+        "Area of the orifice of the tank times its discharge coefficient."),
+];
 
 /// Every key that holds one value.
 #[rustfmt::skip]

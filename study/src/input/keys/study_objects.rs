@@ -3,7 +3,7 @@
 use super::key::Default::{Absent, Number, Required, Word};
 use super::key::{Key, KeyKind};
 use super::row::{from, key};
-use super::study::{CLOCK, FLOW_RATE, GAS_MASS, INFLOW_MASS, KELVIN, ORIFICE_AREA, TANK_PRESSURE};
+use super::study::{CLOCK, FLOW_RATE, GAS_MASS, INFLOW_MASS, KELVIN, TANK};
 use super::words::{self, SUPPORT_PLACES, explained, words};
 use crate::input::units::Dimension;
 
@@ -28,11 +28,8 @@ pub static WINDOW_KEYS: &[Key] = &[
         "\"1 g/s\"", "Mass flow rate."),
     key("temperature", KELVIN, Absent("gas.inflow_temperature"), "\"293 K\"",
         "Temperature of the gas let in."),
-    key("tank_pressure", TANK_PRESSURE, Absent("no tank"), "\"50 bar\"",
-        "Pressure of a tank when it opens, in place of mass_flow_rate: `mass` of gas at `temperature` blows down through \
-         orifice_area, without heat from its wall, until its pressure is gas.ambient_pressure."),
-    key("orifice_area", ORIFICE_AREA, Absent("no tank"), "\"0.5 mm2\"",
-        "Area of the orifice of the tank times its discharge coefficient."),
+    TANK[0],
+    TANK[1],
 ];
 
 /// The keys of a support of a study; paths are those within `supports[]`.

@@ -125,6 +125,10 @@ fn film(
     let unstressed = shape.unstressed.take();
     let mut notes = std::mem::take(&mut reader.notes);
     let supports = supports::read(tree, settings, &shape, &source)?;
+    let nodes = shape.shell.positions.len();
+    notes.extend(supports.iter().map(|FilmSupport { name, nodes: held, .. }| {
+        format!("support {name} is on {} of {nodes} nodes", held.len())
+    }));
     filling::closed(&mut shape, &supports, &mut notes, &source)?;
     conflicts::check(&supports, &shape, &source)?;
     let moves =
