@@ -3,12 +3,12 @@
 //! A job id is the hash of a scene's canonical JSON. A new field or another stored name therefore
 //! changes job ids, and data without influence on results does not belong in a [`Scene`].
 
-mod capsule;
 mod design;
 pub mod error;
 pub mod film_scene;
 pub mod film_support;
 pub mod inflow;
+mod job;
 pub mod monitor_settings;
 pub mod motion;
 pub mod paper;
@@ -17,9 +17,9 @@ pub mod tank;
 pub mod timeline;
 mod validate;
 
-pub use capsule::{
+pub use design::{Design, MeshDesign, MeshFilm};
+pub use job::{
     Contact, Creases, DEFAULT_CFL, Film, GasSupply, HeatTransfer, InflowWindow, IntegratorKind,
     MAX_SAMPLES, ModelKind, Outputs, Scene, Solver, Species, Stepping, Support, SupportLocation,
     Thresholds, Vent,
 };
-pub use design::{Design, MeshDesign, MeshFilm};

@@ -102,13 +102,13 @@ impl Settings {
 
     /// Writes the default of every key that the tree does not give into it.
     pub fn write_defaults(&self, tree: &mut Json) {
-        let values = self.table.keys.iter().zip(&self.values);
-        let is_other = |key: &Key| {
-            has_mesh(tree) && key.path.starts_with("design.") && key.path != "design.subdivisions"
+        let from_mesh = has_mesh(tree);
+        let is_of_fold = |key: &Key| {
+            from_mesh && key.path.starts_with("design.") && key.path != "design.subdivisions"
         };
-        let values: Vec<_> =
-            values.filter(|(key, value)| **value != Value::Null && !is_other(key)).collect();
-        for (key, value) in values {
+        let values = self.table.keys.iter().zip(&self.values);
+        let given = |(key, value): &(&&Key, &Value)| **value != Value::Null && !is_of_fold(key);
+        for (key, value) in values.filter(given) {
             let parts = || key.path.split('.');
             if parts().try_fold(&*tree, Json::get).is_none()
                 && let Some(member) = parts().try_fold(&mut *tree, member)

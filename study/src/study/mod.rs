@@ -21,6 +21,7 @@ pub mod finished;
 mod grid;
 pub(crate) mod ground;
 mod inflow;
+mod mesh_film;
 mod meshes;
 mod parameters;
 mod pilots;
@@ -57,7 +58,7 @@ use crate::scene::file::flow_table;
 use finished::FinishedRow;
 use grid::{Context, Grid};
 pub(crate) use meshes::features;
-pub use meshes::{Meshes, meshes_text, subdivisions};
+pub use meshes::{Meshes, meshes_text};
 pub use parameters::{StudyKey, Zipped};
 pub use search::{Border, Criterion, Level, SearchResult};
 
@@ -168,22 +169,22 @@ impl Study {
         notes.extend(standard_flow::convert(&mut tree, &source)?);
         let mut settings = Settings::of_study(&tree, &source)?;
         settings.tables = Arc::new(flow_table::of_study(&mut tree, &source)?);
-        notes.extend(meshes::read_first(&mut tree, &mut settings, &source)?);
+        notes.extend(mesh_film::read_first(&mut tree, &mut settings, &source)?);
         let result_limits = result_limits::read(tree.get(LIMITS), &source)?;
         let assumed = assumed::read(tree.get("assumed"), &source)?;
         let context =
             Context { settings: &settings, limits: &result_limits, source: &source, max_points };
         let mut grid = Grid::read(&tree, context)?;
         grid.refuse_varied(&source)?;
-        meshes::refuse_design_keys(&settings, &grid, &source)?;
-        meshes::read_others(&tree, &mut settings, &grid.mesh_values(), &source)?;
+        mesh_film::refuse_design_keys(&settings, &grid, &source)?;
+        mesh_film::read_others(&tree, &mut settings, &grid.mesh_values(), &source)?;
         let units = units::read(&tree, &settings, &source)?;
         let (mut points, filtered) = expand::points(&settings, &grid, &source, max_points)?;
         meshes::refuse_other_models(&grid, &points, &source)?;
         notes.extend(parameters::alike(&points));
         let pilots = pilots::meshes(&settings, &grid, &result_limits, &points);
         if let Some(meshes) = &pilots {
-            meshes::read_others(&tree, &mut settings, meshes, &source)?;
+            mesh_film::read_others(&tree, &mut settings, meshes, &source)?;
             pilots::add_mesh(&settings, &mut grid, &mut points);
         }
         let name = study_name(&settings, stem, &source)?;
@@ -250,12 +251,12 @@ impl Study {
 
     /// Whether a planned point is the run of a pilot on another mesh than that of the study.
     pub(crate) fn is_pilot(&self, point: &Point) -> bool {
-        self.mesh_of_pilots().is_some_and(|mesh| subdivisions(point) != mesh)
+        self.mesh_of_pilots().is_some_and(|mesh| point.job.scene.design.subdivisions() != mesh)
     }
 
     /// The mesh of its points, where it has pilots.
     pub(crate) fn mesh_of_pilots(&self) -> Option<u32> {
-        self.pilots.map(|_| subdivisions(&self.points[0]))
+        self.pilots.map(|_| self.points[0].job.scene.design.subdivisions())
     }
 
     /// The most pilots that it can have, one for each run of a point.

@@ -17,7 +17,7 @@ use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use super::column::Column;
 use super::finished::FinishedRow;
 use super::grid::{Axis, AxisKind, Grid};
-use super::meshes::{SUBDIVISIONS, features, known, subdivisions};
+use super::meshes::{SUBDIVISIONS, features, known};
 use crate::accuracy::{Features, MeshErrors, promised};
 use crate::input::keys::{KEYS, short_name};
 use crate::input::settings::Settings;
@@ -155,7 +155,7 @@ pub(super) fn points(
         }
     };
     let runs = chosen.iter().flat_map(|point| {
-        let others = meshes.iter().filter(|n| **n != subdivisions(point));
+        let others = meshes.iter().filter(|n| **n != point.job.scene.design.subdivisions());
         others.map(|n| on_mesh(point, *n))
     });
     runs.collect()

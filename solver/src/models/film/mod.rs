@@ -62,7 +62,7 @@ pub fn check(scene: &Scene) -> Result<(), SceneError> {
 pub fn cost(scene: &Scene) -> Result<Cost, SceneError> {
     // Nothing runs here, and every instruction set gives the same bits.
     let instruction_set = InstructionSet::detect();
-    let (film, _) = solve::stowed(instruction_set, scene, cfl_of(scene)?, None)?;
+    let (film, _) = solve::at_start(instruction_set, scene, cfl_of(scene)?, None)?;
     let model = FilmModel::of_shell(&film.film, &film.shell)
         .map_err(|error| SceneError::invalid("design", error))?;
     let factor = damping::stable_share(scene.film.numerical_damping);
@@ -182,7 +182,7 @@ impl FilmRun {
         cfl: f64,
         contact: Option<FilmContact>,
     ) -> Result<Self, SceneError> {
-        let (film, rings) = solve::stowed(instruction_set, scene, cfl, contact)?;
+        let (film, rings) = solve::at_start(instruction_set, scene, cfl, contact)?;
         Self::of(&film, rings)
     }
 
@@ -225,12 +225,6 @@ impl FilmRun {
             volume + self.fans.iter().map(fan).sum::<f64>() / 6.0
         }
     }
-
-    /// Least and largest z of any node with mass, m.
-    fn heights(&self) -> [f64; 2] {
-        let film = self.view();
-        heights(&film.system.model, &film.state.positions)
-    }
 }
 
 /// Least and largest z of any node with mass, m.
@@ -261,7 +255,7 @@ impl Model for FilmRun {
     fn sample(&self, phase: &Phase) -> Sample {
         let film = self.view();
         let positions = &film.state.positions;
-        let [low, high] = self.heights();
+        let [low, high] = heights(&film.system.model, positions);
         let mut sample = Sample { z_max: high, height: high - low, ..Sample::default() };
         if let Some(rings) = &self.rings {
             let centre = rings.top_centre as usize;

@@ -54,7 +54,7 @@ fn complete(
     checkpoint: Option<Checkpoint<StoredFilm, Run>>,
     observer: &mut dyn Observer,
 ) -> Result<Deployment, SceneError> {
-    let (film, rings) = stowed(instruction_set, scene, cfl, contact)?;
+    let (film, rings) = at_start(instruction_set, scene, cfl, contact)?;
     if !observer.prepares() {
         return Ok(Deployment::cancelled());
     }
@@ -70,7 +70,7 @@ fn complete(
 
 /// The film of a scene as it starts, with this contact, and the rings of a capsule. Contact without a distance has the
 /// default one of the design or of the mesh.
-pub(super) fn stowed(
+pub(super) fn at_start(
     instruction_set: InstructionSet,
     scene: &Scene,
     cfl: f64,

@@ -7,7 +7,7 @@ use crate::job::cost::Costs;
 use crate::job::row::ColumnId;
 use crate::print::{count, duration};
 use crate::study::plan::{PlanCounts, borders};
-use crate::study::{Study, meshes_text, subdivisions};
+use crate::study::{Study, meshes_text};
 
 /// Points whose cost is asked, at most.
 const MAX_COSTED: usize = 20;
@@ -51,7 +51,7 @@ fn pilots(study: &Study) -> Option<String> {
     let film = study.points().iter().filter(|point| point.infeasible.is_none());
     let film = film.filter(|point| point.job.scene.solver.model == ModelKind::Film);
     let film: Vec<_> = film.take(MAX_COSTED).collect();
-    let mesh = subdivisions(film.first()?);
+    let mesh = film.first()?.job.scene.design.subdivisions();
     let others: Vec<u32> = meshes.list.iter().copied().filter(|n| *n != mesh).collect();
     let seconds = others.iter().map(|n| {
         let of_mesh = film.iter().map(|point| {

@@ -17,7 +17,7 @@ use crate::print::{count, print_rows};
 use crate::run::selection::Selection;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
-use crate::study::{JOB_LIMITS, Study, plan, subdivisions};
+use crate::study::{JOB_LIMITS, Study, plan};
 
 /// What is shown of a job and of its run with other settings, before the measures of the limits.
 const COMPARED: [ColumnId; 8] = [
@@ -108,7 +108,7 @@ fn run_changed(
             sets.push(format!("{name}={value}"));
         }
         if stored.study.is_pilot(point) {
-            sets.push(format!("solver.meshes=[{}]", subdivisions(point)));
+            sets.push(format!("solver.meshes=[{}]", point.job.scene.design.subdivisions()));
         }
         let study = Study::load(&stored.results.study_path(), &sets)?;
         let planned = plan::next_jobs(&study, &[]).map(|generation| generation.points);

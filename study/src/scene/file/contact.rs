@@ -165,20 +165,20 @@ impl Start {
 }
 
 /// Film that starts in film: it has no side there. Its pairs of faces lose their contact where they may, else they are
-/// refused.
+/// refused. Returns the contact distance (m) of film without such pairs.
 pub(super) fn settle_start(
     film: &mut FilmScene,
     start: Start,
     numbering: &Numbering,
     notes: &mut Vec<String>,
     source: &Source,
-) -> Result<(), InputError> {
+) -> Result<Option<f64>, InputError> {
     let refused = |error: SceneError| super::scene_error(error, source);
     let (system, ..) = capsule::constants(film).map_err(refused)?;
-    let Some(model) = &system.contact else { return Ok(()) };
+    let Some(model) = &system.contact else { return Ok(None) };
     let found = StartPairs::of(model, &Field::of(&film.shell.positions));
     if found.all.is_empty() {
-        return Ok(());
+        return Ok(Some(model.distance));
     }
     let (does, shown) = match found.crossing.as_slice() {
         [] => ("touches", &found.all),
@@ -193,7 +193,7 @@ pub(super) fn settle_start(
     if let Some(contact) = &mut film.contact {
         contact.ignored = found.all;
     }
-    Ok(())
+    Ok(None)
 }
 
 /// Notes that film passes through film where it starts, for a static equilibrium, which has no contact.

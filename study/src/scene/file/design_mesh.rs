@@ -172,9 +172,13 @@ fn film(
     notes.extend(judge::notes(&film, numbering, mesh::has_reference(json), &source)?);
     let start =
         Start { may_touch: true, may_cross: false, allowed: "a gap between layers, however small" };
-    contact::settle_start(&mut film, start, numbering, &mut notes, &source)?;
-    let (system, ..) = capsule::constants(&film).map_err(|error| scene_error(error, &source))?;
-    let contact_distance = system.contact.map_or(0.0, |contact| contact.distance);
+    let found = contact::settle_start(&mut film, start, numbering, &mut notes, &source)?;
+    let without_pairs = || {
+        let (system, ..) =
+            capsule::constants(&film).map_err(|error| scene_error(error, &source))?;
+        Ok(system.contact.map_or(0.0, |contact| contact.distance))
+    };
+    let contact_distance = found.map_or_else(without_pairs, Checked::Ok)?;
     let ignored = film.contact.map_or_else(Vec::new, |contact| contact.ignored);
     let film = MeshFilm {
         shell: film.shell,

@@ -5,7 +5,8 @@
 //! /            format, version, program_version, commit, physics_version, job, scene, status,
 //!              stop_time, stop_location, content_hash, complete (written last)
 //! /history/    time (a dimension scale), z_centre, … : f64, one value per sample, each with units
-//!              and long_name. Film without rings has no z_centre, z_rim, vz. A scene adds
+//!              and long_name. Film without rings has height in place of
+//!              z_centre, z_rim, vz. A scene adds
 //!              node_NAME_x, …, element_NAME_N1, … for what it follows; film with contact adds
 //!              interlayer_pressure, smallest_gap, …, plate_NAME_force
 //! /events/     time, kind: decisions of the step controller, when there were any (events)
