@@ -19,7 +19,7 @@ fn a_step_without_contact_allocates_nothing() {
     scene.gas.leak_area = 1e-4;
     let mut run = FilmRun::from_scene(InstructionSet::detect(), &scene, DEFAULT_CFL, None).unwrap();
     let inflow =
-        Inflow { mass_flow_rate: 0.005, temperature_flow: 0.005 * 293.0, vent_open: false };
+        Inflow { mass_flow_rate: 0.005, temperature_flow: 0.005 * 293.0, ..Inflow::default() };
     for packed in [true, false] {
         let before = allocations();
         let until = run.film.view().state.time + 2e-3;

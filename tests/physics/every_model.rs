@@ -120,7 +120,7 @@ type Change = fn(&mut Scene);
 
 #[test]
 fn invalid_scenes_name_their_key() {
-    let changes: [(Change, &str); 23] = [
+    let changes: [(Change, &str); 24] = [
         (|s| s.supports.clear(), "supports"),
         (
             |s| s.supports.push(Support { on: SupportLocation::TopRing, fix: "z".to_owned() }),
@@ -133,6 +133,7 @@ fn invalid_scenes_name_their_key() {
         (|s| s.film.compression = 1.5, "film.compression"),
         (|s| s.film.numerical_damping = -0.1, "film.numerical_damping"),
         (|s| s.gas.species.cp = 200.0, "gas.species.cp"),
+        (|s| s.gas.species.vibrations[1] = f64::NAN, "gas.species.vibrations"),
         (|s| s.gas.initial_mass = -1.0, "gas.initial_mass"),
         (|s| s.gas.windows[0].to = -1.0, "gas.windows[0].to"),
         (|s| s.gas.windows[0].mass_flow_rate = -1.0, "gas.windows[0].rate"),

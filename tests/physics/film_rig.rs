@@ -13,7 +13,12 @@ use crate::prelude::*;
 /// The paper's inflow, 5 g/s at 293 K, into a released capsule.
 pub const INFLOW: Phase = Phase {
     packed: false,
-    inflow: Inflow { mass_flow_rate: 5e-3, temperature_flow: 5e-3 * 293.0, vent_open: false },
+    inflow: Inflow {
+        mass_flow_rate: 5e-3,
+        temperature_flow: 5e-3 * 293.0,
+        vibration_flow: 0.0,
+        vent_open: false,
+    },
     end: 0.0,
 };
 

@@ -231,6 +231,11 @@ fn overrides_come_before_expansion() {
     let scene = &generation.points[0].job.scene;
     assert_eq!(scene.film.thickness, 12.7e-6);
     assert!(scene.gas.species.gas_constant > 2000.0);
+    // The cp of carbon dioxide changes with its temperature, unless the study gives one.
+    let changes = |settings: &[&str]| plan(&study, settings).points[0].job.scene.gas.species;
+    assert!(changes(&["gas.species=CO2"]).vibrates());
+    let given = changes(&[r#"gas.species={"gas_constant": 188.924, "cp": 846}"#]);
+    assert!(!given.vibrates() && given.cp == 846.0);
 
     // One value in place of an axis; one value as an axis; a list as an axis.
     let generation = plan(&study, &["N=7"]);

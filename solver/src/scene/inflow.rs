@@ -1,14 +1,16 @@
 //! The inflow schedule: windows of constant mass flow rate and temperature; overlapping windows add up.
 
-use super::{GasSupply, InflowWindow, Vent};
+use super::{GasSupply, InflowWindow, Species, Vent};
 
 /// Total inflow of all open windows, and whether gas can leave by the vent.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Inflow {
     /// Mass flow rate Σ ṁ, kg/s.
     pub mass_flow_rate: f64,
-    /// Σ ṁ `T_in`, kg K/s; times cp, the enthalpy flow in W.
+    /// Σ ṁ `T_in`, kg K/s; times cp, the enthalpy flow in W without that of vibrations.
     pub temperature_flow: f64,
+    /// Enthalpy flow of the vibrations of the molecules, W.
+    pub vibration_flow: f64,
     /// Whether the vent can be open.
     pub vent_open: bool,
 }
@@ -17,22 +19,24 @@ pub struct Inflow {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Schedule {
     windows: Vec<InflowWindow>,
+    species: Species,
     vent: Option<Vent>,
     change_times: Vec<f64>,
 }
 
 impl Schedule {
-    /// The schedule of these windows.
+    /// The schedule of these windows of nitrogen.
     pub fn new(windows: &[InflowWindow]) -> Self {
         let mut change_times: Vec<f64> = windows.iter().flat_map(|w| [w.from, w.to]).collect();
         change_times.sort_by(f64::total_cmp);
         change_times.dedup();
-        Self { windows: windows.to_vec(), vent: None, change_times }
+        Self { windows: windows.to_vec(), species: Species::NITROGEN, vent: None, change_times }
     }
 
     /// The schedule of a supply: its windows, and the times of its vent.
     pub fn of(supply: &GasSupply) -> Self {
-        let mut schedule = Self { vent: supply.vent, ..Self::new(&supply.windows) };
+        let (species, vent) = (supply.species, supply.vent);
+        let mut schedule = Self { species, vent, ..Self::new(&supply.windows) };
         schedule.change_times.extend(supply.vent.iter().flat_map(|vent| [vent.from, vent.to]));
         schedule.change_times.sort_by(f64::total_cmp);
         schedule.change_times.dedup();
@@ -52,6 +56,8 @@ impl Schedule {
         open.fold(Inflow { vent_open, ..Inflow::default() }, |sum, window| Inflow {
             mass_flow_rate: sum.mass_flow_rate + window.mass_flow_rate,
             temperature_flow: sum.temperature_flow + window.mass_flow_rate * window.temperature,
+            vibration_flow: sum.vibration_flow
+                + window.mass_flow_rate * self.species.vibration_energy(window.temperature),
             vent_open,
         })
     }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Design;
+use super::{Design, Species};
 
 /// Everything one run needs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -150,16 +150,6 @@ impl Vent {
         let range = self.full_at - self.opens_at;
         self.area * ((overpressure - self.opens_at) / range).clamp(0.0, 1.0)
     }
-}
-
-/// An ideal gas.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Species {
-    /// Specific gas constant R, J/(kg K).
-    pub gas_constant: f64,
-    /// Specific heat at constant pressure cp, J/(kg K); cv = cp − R.
-    pub cp: f64,
 }
 
 /// Inflow at a constant mass flow rate while `from ≤ t < to`.

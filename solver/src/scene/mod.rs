@@ -13,6 +13,7 @@ pub mod monitor_settings;
 pub mod motion;
 pub mod paper;
 pub mod plate;
+mod species;
 pub mod tank;
 pub mod timeline;
 mod validate;
@@ -20,6 +21,7 @@ mod validate;
 pub use design::{Design, MeshDesign, MeshFilm};
 pub use job::{
     Contact, Creases, DEFAULT_CFL, Film, GasSupply, HeatTransfer, InflowWindow, IntegratorKind,
-    MAX_SAMPLES, ModelKind, Outputs, Scene, Solver, Species, Stepping, Support, SupportLocation,
-    Thresholds, Vent,
+    MAX_SAMPLES, ModelKind, Outputs, Scene, Solver, Stepping, Support, SupportLocation, Thresholds,
+    Vent,
 };
+pub use species::Species;

@@ -62,14 +62,6 @@ impl Film {
         Self { numerical_damping: 0.0, loss_factor: 0.0, ..Self::PAPER };
 }
 
-impl Species {
-    /// Nitrogen.
-    ///
-    /// R 296.803052 J/(kg K): 8.314462618 J/(mol K) (CODATA 2018) over the molar mass. cp
-    /// 1038.81068 J/(kg K): 7 R/2, rounded.
-    pub const NITROGEN: Self = Self { gas_constant: 296.803_052, cp: 1_038.810_68 };
-}
-
 /// No gas yet, nitrogen to come: adiabatic, in vacuum, no leak, no inflow window.
 pub fn nitrogen_supply() -> GasSupply {
     GasSupply {

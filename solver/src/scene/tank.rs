@@ -5,6 +5,7 @@
 //! −dm/dt = A p/√(R T) f     f = √γ (2/(γ+1))^((γ+1)/(2(γ−1)))                 choked: p_out/p ≤ (2/(γ+1))^(γ/(γ−1))
 //!                           f = √(2γ/(γ−1) (r^(2/γ) − r^((γ+1)/γ)))           else, r = p_out/p
 //! choked all the time: m = m₀ (1 + (γ−1)/2 w t)^(−2/(γ−1)),  w = A p₀ f/(√(R T₀) m₀)
+//! cp of temperature: isentropic T, p and m as `Species` has them; γ that of T
 //! ```
 //! A area of the orifice times its discharge coefficient, `p_out` pressure where the gas flows to. Source: J. D. Anderson,
 //! "Modern Compressible Flow", 3rd ed., chapter 5; for the closed form any text on blow-down.
@@ -36,24 +37,26 @@ pub struct Tank {
 impl Tank {
     /// The inflow from time `from` (s) on, against this pressure (Pa); none where the tank has no more.
     pub fn windows(&self, species: &Species, from: f64, outside: f64) -> Vec<InflowWindow> {
-        let gamma = species.cp / (species.cp - species.gas_constant);
         // Pressure over that at the start, at the end.
-        let end = (EQUAL * outside / self.pressure).max(libm::pow(REMAINS, gamma));
+        let least = libm::pow(REMAINS, species.gamma(self.temperature));
+        let end = (EQUAL * outside / self.pressure).max(least);
         if end >= 1.0 {
             return Vec::new();
         }
-        let fraction = |pressure: f64| libm::pow(pressure, 1.0 / gamma);
-        // A mass in the tank over that at the start, by the pressure after part k of all.
+        let temperature = |pressure| species.after_pressure_ratio(self.temperature, pressure);
+        // Mass in the tank over that at the start.
+        let fraction = |pressure: f64| pressure * self.temperature / temperature(pressure);
+        // The pressure after part k of all.
         let at = |k: f64| libm::pow(end, k / f64::from(WINDOWS));
-        let rate = |pressure: f64| self.rate(species, gamma, pressure, outside);
         let mut windows = Vec::new();
         let mut time = from;
         for window in 0..WINDOWS {
             let point = |part: u32| at(f64::from(window) + f64::from(part) / f64::from(PARTS));
             // dt = dm/rate, with m as a function of ln p, in which the points are equally far apart.
             let slope = |part: u32| {
-                let pressure = point(part);
-                self.mass * fraction(pressure) / gamma / rate(pressure)
+                let (pressure, now) = (point(part), temperature(point(part)));
+                let rate = self.rate(species, pressure, now, outside);
+                self.mass * fraction(pressure) / species.gamma(now) / rate
             };
             let step = -libm::log(end) / f64::from(WINDOWS) / f64::from(PARTS);
             let weight = |part: u32| match part {
@@ -65,24 +68,26 @@ impl Tank {
             let to = time + sum * step / 3.0;
             let [before, after] = [point(0), point(PARTS)].map(fraction);
             let mass = self.mass * (before - after);
-            // The mean over the mass that leaves, so that its enthalpy is exact.
-            let powers = [before, after].map(|m| libm::pow(m, gamma));
-            let temperature =
-                self.temperature * (powers[0] - powers[1]) / (gamma * (before - after));
+            // The enthalpy that leaves is the internal energy that the tank loses.
+            let [had, keeps] = [point(0), point(PARTS)].map(|pressure| {
+                let now = temperature(pressure);
+                fraction(pressure) * (species.cv() * now + species.vibration_energy(now))
+            });
+            let enthalpy = (had - keeps) / (before - after);
             windows.push(InflowWindow {
                 from: time,
                 to,
                 mass_flow_rate: mass / (to - time),
-                temperature,
+                temperature: species.temperature(enthalpy, species.gas_constant),
             });
             time = to;
         }
         windows
     }
 
-    /// Mass flow rate at a pressure of the tank, over that at the start, kg/s.
-    fn rate(&self, species: &Species, gamma: f64, pressure: f64, outside: f64) -> f64 {
-        let temperature = self.temperature * libm::pow(pressure, (gamma - 1.0) / gamma);
+    /// Mass flow rate at a pressure of the tank, over that at the start, and its temperature (K), kg/s.
+    fn rate(&self, species: &Species, pressure: f64, temperature: f64, outside: f64) -> f64 {
+        let gamma = species.gamma(temperature);
         let critical = libm::pow(2.0 / (gamma + 1.0), gamma / (gamma - 1.0));
         let ratio = (outside / (pressure * self.pressure)).min(1.0);
         let flow = if ratio <= critical {
@@ -100,7 +105,7 @@ impl Tank {
 mod tests {
     use super::*;
 
-    const NITROGEN: Species = Species { gas_constant: 296.803, cp: 1038.81 };
+    const NITROGEN: Species = Species::constant(296.803, 1038.81);
 
     fn tank() -> Tank {
         Tank { mass: 2e-3, pressure: 5e6, temperature: 293.0, orifice_area: 1e-7 }
@@ -131,6 +136,25 @@ mod tests {
         let remains = tank.mass * REMAINS;
         let lost = cv * tank.temperature * (tank.mass - remains * libm::pow(REMAINS, gamma - 1.0));
         assert!((inside / (tank.mass - remains) - 1.0).abs() < 1e-12);
+        assert!((enthalpy / lost - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_tank_of_carbon_dioxide_loses_what_its_gas_had() {
+        let gas = Species::CARBON_DIOXIDE;
+        let windows = tank().windows(&gas, 0.0, 101_325.0);
+        let (mut inside, mut enthalpy) = (0.0, 0.0);
+        for window in &windows {
+            let entered = window.mass_flow_rate * (window.to - window.from);
+            inside += entered;
+            let heat = gas.cp * window.temperature + gas.vibration_energy(window.temperature);
+            enthalpy += entered * heat;
+        }
+        let energy = |t: f64| gas.cv() * t + gas.vibration_energy(t);
+        let remains = gas.after_pressure_ratio(293.0, EQUAL * 101_325.0 / 5e6);
+        let rest = tank().mass * EQUAL * 101_325.0 / 5e6 * 293.0 / remains;
+        let lost = tank().mass * energy(293.0) - rest * energy(remains);
+        assert!((inside / (tank().mass - rest) - 1.0).abs() < 1e-12);
         assert!((enthalpy / lost - 1.0).abs() < 1e-12);
     }
 

@@ -58,6 +58,9 @@ impl Scene {
         let gas_constant = gas.species.gas_constant;
         let above = |cp: f64| cp > gas_constant && cp.is_finite();
         number("gas.species.cp", gas.species.cp, above, "above gas_constant: cv = cp - R > 0")?;
+        for temperature in gas.species.vibrations {
+            not_negative("gas.species.vibrations", temperature, "K")?;
+        }
         not_negative("gas.initial_mass", gas.initial_mass, "kg")?;
         for (index, window) in gas.windows.iter().enumerate() {
             let key = |name: &str| format!("gas.windows[{index}].{name}");

@@ -34,6 +34,8 @@ pub struct Evaluation {
     pub volume: f64,
     /// Gas pressure at the entropy of the state, or the fixed overpressure, Pa.
     pub gas_pressure: f64,
+    /// −V/p dp/dV of the gas; 0 under a fixed overpressure.
+    pub gas_exponent: f64,
     /// Largest principal stress, Pa.
     pub largest_stress: f64,
 }
@@ -62,7 +64,7 @@ impl FilmSystem {
         self.term_forces(positions, &state.yielded, &mut workspace.forces);
         workspace.contact_at(self, state, positions, time);
         let volume = sums.six_volumes / 6.0;
-        let (gas_pressure, pressure) = self.pressure_energy(state, volume);
+        let (gas_pressure, pressure, gas_exponent) = self.pressure_energy(state, volume);
         let weight = |(mass, x): (&f64, nalgebra::Vector3<f64>)| mass * self.gravity.dot(&x);
         let planes = self.supports.bodies.iter().filter_map(|body| {
             let node = *body.nodes.first()? as usize;
@@ -77,6 +79,7 @@ impl FilmSystem {
             terms: self.term_energy(positions, &state.yielded),
             volume,
             gas_pressure,
+            gas_exponent,
             largest_stress: sums.largest_stress,
         }
     }
@@ -86,18 +89,19 @@ impl FilmSystem {
         self.model.closure_nodes.place(positions);
     }
 
-    /// Pressure (Pa) and energy (J) of the gas of a state in another volume (m³), without inflow, leak and
-    /// heat; isothermal gas keeps its temperature.
-    fn pressure_energy(&self, state: &FilmState, volume: f64) -> (f64, f64) {
+    /// Pressure (Pa), energy (J) and −V/p dp/dV of the gas of a state in another volume (m³), without inflow, leak
+    /// and heat; isothermal gas keeps its temperature.
+    fn pressure_energy(&self, state: &FilmState, volume: f64) -> (f64, f64, f64) {
         match self.pressure_load {
-            PressureLoad::Overpressure(pressure) => (pressure, -pressure * volume),
+            PressureLoad::Overpressure(pressure) => (pressure, -pressure * volume, 0.0),
             PressureLoad::Gas(gas) => {
                 let after = gas.expansion(state.gas, state.volume, volume);
                 let stored = match gas.heat_transfer {
                     HeatTransfer::Isothermal => -after.work,
                     HeatTransfer::Coefficient(_) => after.state.internal_energy,
                 };
-                (after.pressure, stored + gas.ambient_pressure * volume)
+                let energy = stored + gas.ambient_pressure * volume;
+                (after.pressure, energy, gas.exponent(after.state))
             }
         }
     }

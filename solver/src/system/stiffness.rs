@@ -19,7 +19,6 @@ use crate::mechanics::energy_term::{Blocks, Prepared};
 use crate::mechanics::forces::closure;
 use crate::mechanics::forces::membrane::CreepStrain;
 use crate::mechanics::forces::tangent::{self, Stiffness};
-use crate::scene::HeatTransfer;
 
 /// The gas as a stiffness of rank one.
 #[derive(Debug, Clone, PartialEq)]
@@ -134,12 +133,8 @@ impl FilmSystem {
         evaluation: &Evaluation,
         workspace: &Workspace,
     ) -> Option<GasStiffness> {
-        let PressureLoad::Gas(gas) = self.pressure_load else { return None };
-        let exponent = match gas.heat_transfer {
-            HeatTransfer::Isothermal => 1.0,
-            HeatTransfer::Coefficient(_) => gas.gamma(),
-        };
-        let factor = exponent * evaluation.gas_pressure / evaluation.volume;
+        let PressureLoad::Gas(_) = self.pressure_load else { return None };
+        let factor = evaluation.gas_exponent * evaluation.gas_pressure / evaluation.volume;
         Some(GasStiffness { factor, gradient: workspace.forces.areas() })
     }
 }

@@ -244,6 +244,9 @@ fn different_key(scene: &serde_json::Value, runs: &serde_json::Value) -> Option<
                 let [a, b] =
                     [a, b].map(|object| object.get(key).unwrap_or(&serde_json::Value::Null));
                 let difference = different_key(a, b)?;
+                if key == "species" {
+                    return Some("species: the runs of the table have nitrogen".to_owned());
+                }
                 // A study has the key solver.cfl, and solver.stepping only for a step of the piston.
                 if key == "stepping" && difference.starts_with("cfl") {
                     return Some(difference);

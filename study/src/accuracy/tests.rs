@@ -128,6 +128,10 @@ fn a_scene_unlike_the_runs_is_not_covered_and_the_reason_names_its_key() {
         "solver.cfl 0.3: the runs of the table have 0.45"
     );
     assert!(reason(|scene| scene.contact.friction = 0.3).starts_with("contact.friction 0.3"));
+    assert_eq!(
+        reason(|scene| scene.gas.species.cp = 846.0),
+        "gas.species: the runs of the table have nitrogen"
+    );
     assert!(reason(|scene| scene.gravity = -9.8).starts_with("gravity -9.8"));
     assert!(reason(|scene| scene.design.folded_mut().unwrap().panels = 9).starts_with("N 9: "));
 }

@@ -381,7 +381,10 @@ impl Settings {
                 format!("above the gas constant, {gas_constant} J/(kg K)"),
             ));
         }
-        Ok(Species { gas_constant, cp })
+        // A cp that is given is constant.
+        let vibrates = named.filter(|_| self.number(CP).is_none());
+        let gas = vibrates.unwrap_or(Species::constant(gas_constant, cp));
+        Ok(Species { gas_constant, ..gas })
     }
 
     /// Contact of film with film.

@@ -4,7 +4,6 @@ pub mod attempt;
 pub mod control;
 pub mod cost;
 pub mod executor;
-pub mod heat_capacity;
 pub mod id;
 pub mod limits;
 pub mod memory;

@@ -12,7 +12,6 @@ use crate::accuracy::{Features, MeshErrors, Method, PROMISED, choice};
 use crate::input::keys::numerical::{MESH_PARAMETER, SEED};
 use crate::input::keys::{MODELS, Model};
 use crate::input::value::{Value, brief_number};
-use crate::job::heat_capacity;
 use crate::job::point::Point;
 use crate::job::row::ColumnId;
 use crate::job::surroundings::Surroundings;
@@ -66,9 +65,6 @@ fn of_points(study: &Study) -> Vec<String> {
     lines.extend(without_imperfection(study));
     lines.extend(below_ambient(study));
     lines.extend(air_outside(study));
-    let heat =
-        study.points().iter().find_map(|point| heat_capacity::note(&point.job.scene.gas.species));
-    lines.extend(heat.map(|note| format!("note: {note}")));
     lines.extend(refused_by_integrators(study));
     lines.extend(
         MODELS.iter().filter(|model| has(model.kind)).filter_map(|model| ignored(study, model)),

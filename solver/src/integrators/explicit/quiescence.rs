@@ -277,7 +277,7 @@ mod tests {
         assert!(!with(&|film| plates(film, 0.2)));
         assert!(with(&|film| plates(film, 0.04)));
         assert!(!with(&|film| film.system.contact = None));
-        let inflow = Inflow { mass_flow_rate: 1e-3, temperature_flow: 0.3, vent_open: false };
+        let inflow = Inflow { mass_flow_rate: 1e-3, temperature_flow: 0.3, ..Inflow::default() };
         assert!(!is_quiescent(quiescent_film(), &Phase { inflow, ..still }));
         assert!(!is_quiescent(quiescent_film(), &Phase { packed: true, ..still }));
     }

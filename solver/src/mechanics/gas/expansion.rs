@@ -1,7 +1,7 @@
 //! Gas whose volume changes while none enters, leaves or is heated from outside.
 //!
 //! ```text
-//! adiabatic    U' = U (V/V')^(γ−1)        work = U − U'
+//! adiabatic    U' = U (V/V')^(γ−1)        work = U − U'        cp of temperature: isentropic (`scene::Species`)
 //! isothermal   U' = U                     work = heat = p V ln(V'/V)
 //! ```
 
@@ -17,7 +17,13 @@ impl Gas {
                 (state, work, work)
             }
             HeatTransfer::Coefficient(_) => {
-                let after = state.internal_energy * libm::pow(from / to, self.gamma() - 1.0);
+                let after = if self.species.vibrates() && state.mass > 0.0 {
+                    let before = self.temperature(state);
+                    let after = self.species.after_volume_ratio(before, to / from);
+                    self.internal_energy(state.mass, after)
+                } else {
+                    state.internal_energy * libm::pow(from / to, self.gamma() - 1.0)
+                };
                 let work = state.internal_energy - after;
                 (GasState { internal_energy: after, ..state }, work, 0.0)
             }

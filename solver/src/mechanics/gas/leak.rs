@@ -34,6 +34,11 @@ impl Orifice {
         }
     }
 
+    /// The orifice for gas of this γ.
+    pub(super) fn of_gamma(self, gamma: f64) -> Self {
+        Self::new(gamma, self.effective_area)
+    }
+
     /// The orifice with this `C_d` A (m²) more.
     pub(super) fn wider(self, effective_area: f64) -> Self {
         Self { effective_area: self.effective_area + effective_area, ..self }

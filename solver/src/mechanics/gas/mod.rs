@@ -4,6 +4,7 @@
 //! dm/dt = ṁ_in − ṁ_out
 //! dU/dt = ṁ_in cp T_in − ṁ_out cp T − p dV/dt + Q̇        Q̇ = h A (T_film − T)
 //! T = U/(m cv)          p = (γ − 1) U/V                   γ = cp/cv, cv = cp − R        ṁ_out: `leak`
+//! cp of temperature:    m u(T) = U, p = m R T/V, and h(T) in place of cp T (`scene::Species`)
 //! ```
 //!
 //! Symbols: m mass, kg; U internal energy, J; T temperature, K; p pressure, Pa; V volume, m³;
@@ -22,7 +23,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::scene::inflow::Inflow;
-use crate::scene::{GasSupply, HeatTransfer, Vent};
+use crate::scene::{GasSupply, HeatTransfer, Species, Vent};
 
 mod expansion;
 mod leak;
@@ -68,9 +69,10 @@ const MIN_EXCHANGE_TIME: f64 = 1e-6;
 /// Constants of the control volume during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gas {
-    /// cp, J/(kg K).
+    species: Species,
+    /// cp without vibrations, J/(kg K).
     pub cp: f64,
-    /// cv, J/(kg K).
+    /// cv without vibrations, J/(kg K).
     pub cv: f64,
     /// Pressure outside, Pa.
     pub ambient_pressure: f64,
@@ -91,26 +93,54 @@ impl Gas {
         let cp = supply.species.cp;
         let cv = cp - supply.species.gas_constant;
         Self {
+            species: supply.species,
             cp,
             cv,
             ambient_pressure: supply.ambient_pressure,
             film_temperature,
             heat_transfer: supply.heat_transfer,
             film_area,
-            orifice: Orifice::new(cp / cv, supply.discharge_coefficient * supply.leak_area),
+            orifice: Orifice::new(
+                supply.species.gamma(film_temperature),
+                supply.discharge_coefficient * supply.leak_area,
+            ),
             vent: supply.vent,
             discharge_coefficient: supply.discharge_coefficient,
         }
     }
 
-    /// γ = cp/cv.
+    /// γ = cp/cv without vibrations: the largest.
     pub fn gamma(&self) -> f64 {
         self.cp / self.cv
     }
 
+    /// −V/p dp/dV without inflow, leak and heat: γ of its temperature, 1 if isothermal.
+    pub fn exponent(&self, state: GasState) -> f64 {
+        match self.heat_transfer {
+            HeatTransfer::Isothermal => 1.0,
+            HeatTransfer::Coefficient(_) if self.species.vibrates() => {
+                self.species.gamma(self.temperature(state))
+            }
+            HeatTransfer::Coefficient(_) => self.gamma(),
+        }
+    }
+
+    /// Internal energy, J, of a mass (kg) at a temperature (K).
+    fn internal_energy(&self, mass: f64, temperature: f64) -> f64 {
+        mass * self.cv * temperature + mass * self.species.vibration_energy(temperature)
+    }
+
+    /// The leak at this temperature inside, K.
+    fn orifice(&self, temperature: f64) -> Orifice {
+        if self.species.vibrates() {
+            return self.orifice.of_gamma(self.species.gamma(temperature));
+        }
+        self.orifice
+    }
+
     /// State of gas with this mass (kg) and temperature (K).
     pub fn at_temperature(&self, mass: f64, temperature: f64) -> GasState {
-        GasState { mass, internal_energy: mass * self.cv * temperature }
+        GasState { mass, internal_energy: self.internal_energy(mass, temperature) }
     }
 
     /// T, K; the film temperature where there is no gas.
@@ -118,7 +148,11 @@ impl Gas {
         match self.heat_transfer {
             HeatTransfer::Isothermal => self.film_temperature,
             HeatTransfer::Coefficient(_) => {
-                let temperature = state.internal_energy / (state.mass * self.cv);
+                let temperature = if self.species.vibrates() {
+                    self.species.temperature(state.internal_energy / state.mass, 0.0)
+                } else {
+                    state.internal_energy / (state.mass * self.cv)
+                };
                 let valid = state.mass > 0.0 && temperature.is_finite() && temperature >= 0.0;
                 if valid { temperature } else { self.film_temperature }
             }
@@ -129,6 +163,10 @@ impl Gas {
     pub fn pressure(&self, state: GasState, volume: f64) -> f64 {
         let internal_energy = match self.heat_transfer {
             HeatTransfer::Isothermal => state.mass * self.cv * self.film_temperature,
+            // Without that of vibrations, which make no pressure.
+            HeatTransfer::Coefficient(_) if self.species.vibrates() => {
+                state.mass * self.cv * self.temperature(state)
+            }
             HeatTransfer::Coefficient(_) => state.internal_energy,
         };
         (self.gamma() - 1.0) * internal_energy / volume
@@ -140,10 +178,19 @@ impl Gas {
     fn first_temperature(&self, inflow: Inflow) -> f64 {
         match self.heat_transfer {
             HeatTransfer::Coefficient(_) if inflow.mass_flow_rate > 0.0 => {
+                if self.species.vibrates() {
+                    let enthalpy = self.enthalpy_flow(inflow) / inflow.mass_flow_rate;
+                    return self.species.temperature(enthalpy, 0.0);
+                }
                 self.gamma() * inflow.temperature_flow / inflow.mass_flow_rate
             }
             _ => self.film_temperature,
         }
+    }
+
+    /// Enthalpy flow of an inflow, W.
+    fn enthalpy_flow(&self, inflow: Inflow) -> f64 {
+        self.cp * inflow.temperature_flow + inflow.vibration_flow
     }
 
     /// Both balances at the volume V (m³) that changes at dV/dt (m³/s).
@@ -157,23 +204,24 @@ impl Gas {
         let temperature =
             if state.mass > 0.0 { self.temperature(state) } else { self.first_temperature(inflow) };
         let pressure = self.pressure(state, volume);
-        let orifice = match self.vent {
-            Some(vent) if inflow.vent_open => {
-                let area = vent.open_area(pressure - self.ambient_pressure);
-                self.orifice.wider(self.discharge_coefficient * area)
-            }
-            _ => self.orifice,
-        };
+        let backwards = pressure < self.ambient_pressure;
+        let upstream = if backwards { self.film_temperature } else { temperature };
+        let mut orifice = self.orifice(upstream);
+        if let Some(vent) = self.vent.filter(|_| inflow.vent_open) {
+            let area = vent.open_area(pressure - self.ambient_pressure);
+            orifice = orifice.wider(self.discharge_coefficient * area);
+        }
+        let vibration = self.species.vibration_energy(upstream);
         let outflow = orifice.mass_flow(pressure, state.mass / volume, self.ambient_pressure);
-        let (mass_out, enthalpy_out) = if pressure < self.ambient_pressure {
+        let (mass_out, enthalpy_out) = if backwards {
             // p = (cp − cv) ρ T outside.
             let density = self.ambient_pressure / ((self.cp - self.cv) * self.film_temperature);
             let back = orifice.mass_flow(self.ambient_pressure, density, pressure);
-            (-back, -back * self.cp * self.film_temperature)
+            (-back, -back * self.cp * self.film_temperature - back * vibration)
         } else {
-            (outflow, outflow * self.cp * temperature)
+            (outflow, outflow * self.cp * temperature + outflow * vibration)
         };
-        let enthalpy_in = self.cp * inflow.temperature_flow;
+        let enthalpy_in = self.enthalpy_flow(inflow);
         let work = pressure * volume_rate;
         let mass = inflow.mass_flow_rate - mass_out;
         let without_heat = enthalpy_in - enthalpy_out - work;
@@ -185,7 +233,8 @@ impl Gas {
                 (without_heat + heat, heat)
             }
             HeatTransfer::Isothermal => {
-                let internal_energy = self.cv * self.film_temperature * mass;
+                let vibration = self.species.vibration_energy(self.film_temperature);
+                let internal_energy = self.cv * self.film_temperature * mass + vibration * mass;
                 (internal_energy, internal_energy - without_heat)
             }
         };
@@ -265,7 +314,12 @@ mod tests {
         assert_eq!(vented(vent, 0.01, Inflow::default(), 0.5).1.mass, 0.01);
         // With an inflow the pressure rests where the valve lets out as much: A(p) p f √(1/(R T)) = ṁ.
         let valve = Vent { opens_at: 2000.0, full_at: 3000.0, ..vent };
-        let flow = Inflow { mass_flow_rate: 2e-4, temperature_flow: 2e-4 * 293.0, vent_open: true };
+        let flow = Inflow {
+            mass_flow_rate: 2e-4,
+            temperature_flow: 2e-4 * 293.0,
+            vent_open: true,
+            ..Inflow::default()
+        };
         let (gas, state) = vented(valve, 0.0, flow, 16.0);
         let pressure = gas.pressure(state, 0.01);
         let out = discharge * valve.open_area(pressure) * pressure * gas.orifice.choked_factor
@@ -314,7 +368,7 @@ mod tests {
         let gas = gas(HeatTransfer::Isothermal, 1e-4);
         let state = gas.at_temperature(0.002, 293.0);
         let inflow =
-            Inflow { mass_flow_rate: 0.01, temperature_flow: 0.01 * 350.0, vent_open: false };
+            Inflow { mass_flow_rate: 0.01, temperature_flow: 0.01 * 350.0, ..Inflow::default() };
         let rates = gas.rates(state, 0.1, 0.7, inflow);
         let balance = rates.enthalpy_in - rates.enthalpy_out - rates.work + rates.heat;
         assert!((balance - rates.internal_energy).abs() < 1e-12 * rates.enthalpy_in);

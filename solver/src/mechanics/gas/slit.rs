@@ -29,7 +29,7 @@ impl Gas {
         let ratio = gap / length;
         let passed = if ratio < 1.0 { (ratio * (0.5 - libm::log(ratio))).min(1.0) } else { 1.0 };
         let free = if gap > 0.0 { gap * passed * speed / (2.0 * PI).sqrt() } else { 0.0 };
-        viscous.max(free).min(gap * speed * self.orifice.choked_factor)
+        viscous.max(free).min(gap * speed * self.orifice(temperature).choked_factor)
     }
 }
 

@@ -7,7 +7,7 @@
 //! inflow: exact
 //! ```
 //!
-//! T and p are linear in U, so U1 has a closed form. θ is ½ for slow exchange; for a volume of constant
+//! T and p are linear in U, so U1 has a closed form; with a cp of temperature T1 is found by Newton's method. θ is ½ for slow exchange; for a volume of constant
 //! mass it reproduces the decay e^−z exactly, for any z. The step reports every term of its balance, so
 //! mass and energy are conserved to rounding. The energy accounting of the film uses the same dV.
 
@@ -100,17 +100,17 @@ impl Gas {
     ) -> GasStep {
         let mass_out = leak.mass * time;
         let mass = state.mass + inflow.mass_flow_rate * time - mass_out;
-        let enthalpy_in = self.cp * inflow.temperature_flow * time;
+        let enthalpy_in = self.enthalpy_flow(inflow) * time;
         let enthalpy_out = leak.enthalpy * time;
         let pressure_before = self.pressure(state, from);
         let growth = to - from;
         let (internal_energy, heat, work);
         match self.heat_transfer {
             HeatTransfer::Isothermal => {
-                internal_energy = mass * self.cv * self.film_temperature;
+                internal_energy = self.internal_energy(mass, self.film_temperature);
                 let pressure_after = self.pressure(GasState { mass, internal_energy }, to);
                 work = 0.5 * (pressure_before + pressure_after) * growth;
-                let energy_before = state.mass * self.cv * self.film_temperature;
+                let energy_before = self.internal_energy(state.mass, self.film_temperature);
                 heat = internal_energy - energy_before - enthalpy_in + enthalpy_out + work;
             }
             HeatTransfer::Coefficient(coefficient) => {
@@ -118,7 +118,8 @@ impl Gas {
                 let temperature =
                     if any_gas { self.temperature(state) } else { self.first_temperature(inflow) };
                 // m cv in the middle of the step, J/K.
-                let capacity = 0.5 * (state.mass + mass) * self.cv;
+                let heat_capacity = self.cv + self.species.vibration_heat(temperature);
+                let capacity = 0.5 * (state.mass + mass) * heat_capacity;
                 let rate = (coefficient * self.film_area).min(capacity / MIN_EXCHANGE_TIME);
                 let exchange = rate * time;
                 let theta = if exchange > 0.0 && capacity > 0.0 {
@@ -126,7 +127,7 @@ impl Gas {
                 } else {
                     0.5
                 };
-                // Heat = explicit_heat − per_energy U1, work = ½ p0 ΔV + per_work U1.
+                // Heat = explicit_heat − per_energy L, work = ½ p0 ΔV + per_work L, L = m cv T1 without vibrations.
                 let per_energy = if mass > 0.0 { exchange * theta / (mass * self.cv) } else { 0.0 };
                 let explicit_heat =
                     exchange * (self.film_temperature - (1.0 - theta) * temperature);
@@ -135,9 +136,17 @@ impl Gas {
                     - enthalpy_out
                     - 0.5 * pressure_before * growth
                     + if mass > 0.0 { explicit_heat } else { 0.0 };
-                internal_energy = known / (1.0 + per_work + per_energy);
-                work = 0.5 * pressure_before * growth + per_work * internal_energy;
-                heat = if mass > 0.0 { explicit_heat - per_energy * internal_energy } else { 0.0 };
+                let linear = if self.species.vibrates() && mass > 0.0 {
+                    let more = self.cv * (per_work + per_energy);
+                    let linear = mass * self.cv * self.species.temperature(known / mass, more);
+                    internal_energy = known - (per_work + per_energy) * linear;
+                    linear
+                } else {
+                    internal_energy = known / (1.0 + per_work + per_energy);
+                    internal_energy
+                };
+                work = 0.5 * pressure_before * growth + per_work * linear;
+                heat = if mass > 0.0 { explicit_heat - per_energy * linear } else { 0.0 };
             }
         }
         let state = GasState { mass, internal_energy };
@@ -161,12 +170,34 @@ fn implicit_share(z: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::GasSupply;
     use crate::scene::paper::nitrogen_supply;
+    use crate::scene::{GasSupply, Species};
+
+    fn of(species: Species, heat_transfer: HeatTransfer, leak_area: f64) -> Gas {
+        let supply = GasSupply { species, heat_transfer, leak_area, ..nitrogen_supply() };
+        Gas::new(&supply, 293.0, 2.0)
+    }
 
     fn gas(heat_transfer: HeatTransfer, leak_area: f64) -> Gas {
-        let supply = GasSupply { heat_transfer, leak_area, ..nitrogen_supply() };
-        Gas::new(&supply, 293.0, 2.0)
+        of(Species::NITROGEN, heat_transfer, leak_area)
+    }
+
+    /// One gas of constant cp, one whose cp changes with temperature, each with and without constant temperature.
+    fn gases(leak_area: f64) -> [Gas; 4] {
+        let [warm, held] = [HeatTransfer::Coefficient(3.0), HeatTransfer::Isothermal];
+        let [one, other] = [Species::NITROGEN, Species::CARBON_DIOXIDE];
+        [(one, warm), (one, held), (other, warm), (other, held)]
+            .map(|(species, heat)| of(species, heat, leak_area))
+    }
+
+    /// 4 g/s at 320 K.
+    fn inflow(gas: &Gas) -> Inflow {
+        Inflow {
+            mass_flow_rate: 0.004,
+            temperature_flow: 0.004 * 320.0,
+            vibration_flow: 0.004 * gas.species.vibration_energy(320.0),
+            vent_open: false,
+        }
     }
 
     #[test]
@@ -190,25 +221,41 @@ mod tests {
 
     #[test]
     fn expansion_follows_the_adiabat_to_second_order() {
-        let gas = gas(HeatTransfer::Coefficient(0.0), 0.0);
-        let error = |steps: u32| {
-            let mut state = gas.at_temperature(0.002, 300.0);
-            let volume = |k: u32| 0.1 + 0.1 * f64::from(k) / f64::from(steps);
-            for k in 0..steps {
-                state = gas.step(state, volume(k), volume(k + 1), 1.0, Inflow::default()).state;
-            }
-            gas.temperature(state) / (300.0 * libm::pow(0.5, gas.gamma() - 1.0)) - 1.0
-        };
-        let (coarse, fine) = (error(50), error(100));
-        assert!(fine.abs() < 1e-5 && (coarse / fine - 4.0).abs() < 0.05, "{coarse} {fine}");
+        let nitrogen = gas(HeatTransfer::Coefficient(0.0), 0.0);
+        let cold = 300.0 * libm::pow(0.5, nitrogen.gamma() - 1.0);
+        // cp ln(T/300 K) + entropy of the vibrations = R ln(p/p0), solved by bisection.
+        let other = of(Species::CARBON_DIOXIDE, HeatTransfer::Coefficient(0.0), 0.0);
+        for (gas, cold) in [(nitrogen, cold), (other, 243.3293)] {
+            let start = gas.at_temperature(0.002, 300.0);
+            let exact = gas.temperature(gas.expansion(start, 0.1, 0.2).state);
+            assert!((exact / cold - 1.0).abs() < 1e-5, "{exact} {cold}");
+            let error = |steps: u32| {
+                let mut state = start;
+                let volume = |k: u32| 0.1 + 0.1 * f64::from(k) / f64::from(steps);
+                for k in 0..steps {
+                    state = gas.step(state, volume(k), volume(k + 1), 1.0, Inflow::default()).state;
+                }
+                gas.temperature(state) / exact - 1.0
+            };
+            let (coarse, fine) = (error(50), error(100));
+            assert!(fine.abs() < 1e-5 && (coarse / fine - 4.0).abs() < 0.05, "{coarse} {fine}");
+        }
+    }
+
+    #[test]
+    fn gas_that_fills_an_empty_vessel_has_the_energy_of_its_enthalpy() {
+        let gas = of(Species::CARBON_DIOXIDE, HeatTransfer::Coefficient(0.0), 0.0);
+        let step = gas.step(GasState::default(), 0.1, 0.1, 0.5, inflow(&gas));
+        // u(T) = h(320 K), by the tables of NIST: 404 K.
+        assert!((gas.temperature(step.state) - 404.3).abs() < 0.1);
+        let expected = 0.002 * 188.924 * gas.temperature(step.state) / 0.1;
+        assert!((step.pressure / expected - 1.0).abs() < 1e-13);
     }
 
     #[test]
     fn steps_converge_to_second_order() {
-        let inflow =
-            Inflow { mass_flow_rate: 0.004, temperature_flow: 0.004 * 320.0, vent_open: false };
-        for heat in [HeatTransfer::Coefficient(3.0), HeatTransfer::Isothermal] {
-            let gas = gas(heat, 2e-5);
+        for gas in gases(2e-5) {
+            let inflow = inflow(&gas);
             let run = |steps: u32| {
                 let mut state = gas.at_temperature(0.001, 293.0);
                 let time = 0.5 / f64::from(steps);
@@ -227,13 +274,10 @@ mod tests {
 
     #[test]
     fn mass_and_energy_are_conserved() {
-        let inflow =
-            Inflow { mass_flow_rate: 0.004, temperature_flow: 0.004 * 320.0, vent_open: false };
-        for heat in [HeatTransfer::Coefficient(3.0), HeatTransfer::Isothermal] {
+        for gas in gases(2e-5) {
             for mass in [0.0, 1e-12, 1e-3] {
-                let gas = gas(heat, 2e-5);
                 let state = gas.at_temperature(mass, 293.0);
-                let step = gas.step(state, 0.2, 0.21, 1e-3, inflow);
+                let step = gas.step(state, 0.2, 0.21, 1e-3, inflow(&gas));
                 let gained = step.enthalpy_in - step.enthalpy_out + step.heat - step.work;
                 let change = step.state.internal_energy - state.internal_energy;
                 assert!((gained - change).abs() < 1e-13, "{gained} {change}");

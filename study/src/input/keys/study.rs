@@ -196,7 +196,7 @@ pub static KEYS: &[Key] = &[
         "Fold angle at rest, in the packed direction: 0 is flat. It needs creases.length_scale."),
 
     key("gas.species", KeyKind::Choice(&words(&SPECIES)), Word("nitrogen"), "\"nitrogen\"",
-        "The gas: a name, or its formula (N2, He, Ar, CO2, H2), or an object of gas_constant and cp.")
+        "The gas: a name, or its formula (N2, He, Ar, CO2, H2), or an object of gas_constant and cp. cp of carbon dioxide changes with temperature.")
         .excludes(&["gas.species.gas_constant", "gas.species.cp"]),
     key("gas.species.gas_constant", likely(from(Dimension::SpecificHeat, 10.0, 10_000.0), 40.0, 4500.0),
         Absent("that of the named species"), "\"296.803052 J/(kg K)\"", "Specific gas constant, R."),

@@ -240,7 +240,7 @@ pub(crate) const PROFILES: [Named<Profile>; 2] = [
 
 /// A named gas. Specific gas constant R and specific heat cp, J/(kg K).
 const fn gas(name: &'static str, gas_constant: f64, cp: f64) -> Named<Species> {
-    word(name, Species { gas_constant, cp }, "")
+    word(name, Species::constant(gas_constant, cp), "")
 }
 
 /// The named species: ideal gases, R = 8.314462618 J/(mol K) over the molar mass (CODATA 2018), cp
@@ -250,7 +250,7 @@ pub(crate) const SPECIES: [Named<Species>; 6] = [
     gas("air", 287.055, 1_005.0),
     gas("helium", 2_077.264, 5_193.16),
     gas("argon", 208.132, 520.33),
-    gas("carbon_dioxide", 188.924, 846.0),
+    word("carbon_dioxide", Species::CARBON_DIOXIDE, ""),
     gas("hydrogen", 4_124.48, 14_310.0),
 ];
 

@@ -18,7 +18,6 @@ use crate::input::sections::check_window;
 use crate::input::settings::Settings;
 use crate::input::source::{Source, shown};
 use crate::input::value::brief_number;
-use crate::job::heat_capacity;
 use crate::job::surroundings::{Surroundings, of_sphere};
 use crate::platform::error::Result;
 
@@ -80,7 +79,6 @@ pub(super) fn read(
     let initial_temperature = initial_temperature(&supply, settings, source)?;
     supply.initial_mass = initial_mass(&supply, settings, volume, initial_temperature, source)?;
     notes.extend(below_ambient(&supply, volume, initial_temperature));
-    notes.extend(heat_capacity::note(&supply.species));
     notes.extend(air_outside(tree, settings, shape, &supply, source)?);
     Ok(Filling::Gas { supply, initial_temperature })
 }

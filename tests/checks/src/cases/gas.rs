@@ -322,7 +322,7 @@ pub fn injected_piston_dead_volume(rig: &Rig) -> Outcome {
 pub fn gas_spring(rig: &Rig) -> Outcome {
     let [gamma, band] = entry("gas_spring", ["gamma", "band"]);
     // cp/cv = γ exactly.
-    let species = Species { gas_constant: 296.8, cp: 296.8 * gamma / (gamma - 1.0) };
+    let species = Species::constant(296.8, 296.8 * gamma / (gamma - 1.0));
     let (mass, length, area, pressure) = (0.4, 0.3, 0.02, 2000.0);
     let linear = TAU * (mass * length / (gamma * pressure * area)).sqrt();
     let initial_mass = pressure * area * length / (species.gas_constant * FILM_TEMPERATURE);

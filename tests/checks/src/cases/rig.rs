@@ -88,7 +88,7 @@ pub fn inflow(rate: f64, temperature: f64) -> Phase {
         inflow: Inflow {
             mass_flow_rate: rate,
             temperature_flow: rate * temperature,
-            vent_open: false,
+            ..Inflow::default()
         },
         ..Phase::default()
     }
