@@ -1,6 +1,6 @@
 # make study    install what is missing, build, run studies/first.json, print its table, draw its charts
 # make test     the quick tier of the tests and of the reference cases (what CI runs)
-# make test-all the quick tier, the long ones, every reference case, and the Python readers
+# make test-all the quick tier, the long ones, every reference case, the Python readers, and the reports in a browser
 # make contact-matrix  the paper's capsule with contact over meshes, loads and seeds (an hour)
 # make torture  kills, signals, full disks, damaged and mutated files, little memory: 20 minutes, one table
 # make paper    the studies of the paper's cases (an hour), their tables and pictures in results/paper/published
@@ -8,6 +8,7 @@
 #               exact answer, their tables and pictures in results/pareto/published
 # make stability  where each method fails: studies/stability.json (a quarter of an hour on two cores), its maps and pictures in results/stability/published
 # make validate every reference case, with its error and its tolerance: twenty minutes on one core
+# make browser  reports of nine small studies, used in headless Chromium: a minute
 # make bench    what billow costs on this machine, a few minutes
 # make slurm    a study on a Slurm cluster of two nodes on this machine, with accidents, with the program of make dist (root only)
 # make dist     a self-contained program with licences, completions and man page, as an archive in target/dist
@@ -28,9 +29,10 @@ CHECKS := $${CARGO_TARGET_DIR:-target}/release/billow-checks
 PACKAGES := libhdf5-dev pkg-config
 DIST_PACKAGES := g++ binutils git python3 python3-venv
 READER_PACKAGES := python3 python3-venv
+BROWSER_PACKAGES := chromium python3
 SLURM_PACKAGES := slurmctld slurmd slurm-client munge procps python3
 
-.PHONY: dist study paper pareto stability validate test test-all test-long torture contact-matrix readers build program bench scale layers check deps dist-deps reader-deps slurm slurm-deps fresh-check
+.PHONY: dist study paper pareto stability validate test test-all test-long torture contact-matrix readers browser build program bench scale layers check deps dist-deps reader-deps browser-deps slurm slurm-deps fresh-check
 
 study: program
 	$(BILLOW) run studies/first.json
@@ -53,7 +55,7 @@ test: deps
 	$(CARGO) test $(FLAGS)
 	$(CHECKS) validate --quick
 
-test-all: test test-long readers slurm
+test-all: test test-long readers browser slurm
 
 # Tests marked `#[ignore]` are the long tier; so are the cases `validate --quick` leaves out.
 test-long: deps reader-deps
@@ -77,6 +79,9 @@ readers: program reader-deps
 	    $(BILLOW) export "$$results/$$study" --out "$$results/$$study.nc" > /dev/null; \
 	    tests/readers/check.sh "$$results/$$study" "$$results/$$study.nc"; \
 	done
+
+browser: program browser-deps
+	python3 tests/report/browser.py $(BILLOW)
 
 build: deps
 	$(CARGO) build $(FLAGS)
@@ -121,6 +126,9 @@ dist-deps:
 
 reader-deps:
 	@.ci/install.sh $(READER_PACKAGES)
+
+browser-deps:
+	@.ci/install.sh $(BROWSER_PACKAGES)
 
 fresh-check:
 	.ci/fresh-check.sh

@@ -46,6 +46,7 @@ pub mod job;
 pub mod platform;
 pub mod print;
 pub mod render;
+pub mod report;
 pub mod run;
 pub mod scene;
 pub mod store;

@@ -121,7 +121,7 @@ fn invalid_requests_give_one_error() {
         (&["grid.json"], "not an HDF5 file"),
         (&[&job, results, "--times", "5 ms"], "0 to 0.004 s"),
         (&[&job, results, "--view", "north"], "degrees"),
-        (&[&job, results, "--out", "a.gif"], ".svg or .png"),
+        (&[&job, results, "--out", "a.gif"], ".svg, .png, .obj"),
         (&[&job, results, "--out", "grid.json/a.svg"], "grid.json"),
     ] {
         folder.refuses(&[&["frames"], arguments].concat(), part);
@@ -150,4 +150,39 @@ fn a_solved_scene_stores_frames_too() {
     assert_eq!(all.len(), 3);
     folder.stdout(&["frames", "run.h5"]);
     assert_eq!(panels(&folder.path().join("run_frames.svg")), [stored.triangles().len(); 3]);
+}
+
+#[test]
+fn a_motion_and_its_shapes_go_to_other_programs() {
+    let (folder, job, _) = ran();
+    let write = |arguments: &[&str]| {
+        let words = [&["frames", job.as_str(), "results/grid"], arguments, &["--json"]].concat();
+        let rows: Value = serde_json::from_str(&folder.stdout(&words)).unwrap();
+        (fs::read(folder.path().join(arguments[1])).unwrap(), rows[0]["frames"].as_u64().unwrap())
+    };
+    let (gif, shown) = write(&["--animate", "motion.gif"]);
+    assert!(gif.starts_with(b"GIF89a") && shown == 201, "{shown}");
+    let (_, all) = frames(&file_of(&folder, &job));
+    let (glb, shown) = write(&["--out", "motion.glb"]);
+    assert!(glb.starts_with(b"glTF") && shown == all.len() as u64, "{shown}");
+    // The last shape, and one at a time.
+    let top = |text: &[u8]| {
+        let heights = str::from_utf8(text).unwrap().lines().filter(|line| line.starts_with("v "));
+        let height = |line: &str| line.rsplit(' ').next().unwrap().parse::<f32>().unwrap();
+        heights.map(height).fold(0.0, f32::max)
+    };
+    let highest = |frame: &Frame| frame.positions.iter().map(|p| p[2]).fold(0.0, f32::max);
+    let (last, _) = write(&["--out", "last.obj"]);
+    assert!((top(&last) - highest(&all[3])).abs() < 1e-6);
+    let (first, shown) = write(&["--out", "first.obj", "--times", "0"]);
+    assert!((top(&first) - highest(&all[0])).abs() < 1e-6 && shown == 1);
+    assert_eq!(write(&["--out", "last.stl"]).0.len(), 84 + 50 * all[3].stresses.len());
+    for (arguments, said) in [
+        (&["--animate", "motion.mp4"][..], ".webm"),
+        (&["--out", "shape.obj", "--times", "0,1ms"], "one time"),
+        (&["--out", "shape.step"], ".glb"),
+        (&["--animate", "a.gif", "--count", "3"], "--count"),
+    ] {
+        folder.refuses(&[&["frames", job.as_str(), "results/grid"], arguments].concat(), said);
+    }
 }

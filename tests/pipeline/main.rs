@@ -26,6 +26,7 @@ mod random;
 mod rank_and_borders;
 mod refused;
 mod replicate_tables;
+mod report;
 mod results_folder;
 mod run_and_table;
 mod scene_files;

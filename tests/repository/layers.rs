@@ -35,7 +35,7 @@ const ROOMS: [(&str, &[&str]); 3] = [
         "study",
         &[
             "platform", "input", "job", "accuracy", "scene", "study", "store", "run", "cluster",
-            "analysis", "print", "render", "chart", "cli",
+            "analysis", "print", "render", "chart", "report", "cli",
         ],
     ),
     ("tests/checks", &["output", "cases", "exact", "stability", "bench", "convergence"]),

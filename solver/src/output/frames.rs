@@ -13,7 +13,7 @@ use crate::mechanics::material::Regime;
 use crate::scene::timeline::Timeline;
 
 /// The film at one moment.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Frame {
     /// Simulated time, s.

@@ -33,6 +33,7 @@ mod mesh_picture;
 pub mod options;
 pub mod picture;
 mod plan;
+mod report;
 pub mod results;
 mod run;
 mod solve;
@@ -86,6 +87,8 @@ pub enum Command {
     Table(table::Args),
     /// Draw charts of a study's results, as SVG and PNG.
     Chart(chart::Args),
+    /// Write one page with the answer, the table, curves and shapes in motion; it opens without network.
+    Report(report::Args),
     /// Write all results of a study into one file that xarray opens.
     Export(export::Args),
     /// List the keys of a study or scene file, with unit, default, range and meaning.
@@ -139,6 +142,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
         Command::Solve(args) => solve::run(args, out),
         Command::Table(args) => table::run(args, out),
         Command::Chart(args) => chart::run(args, out),
+        Command::Report(args) => report::run(args, out),
         Command::Export(args) => export::run(args, out),
         Command::Keys(args) => keys::run(args, out),
         Command::Completions(args) => completions::run(args, out),
@@ -149,7 +153,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
 const GROUPS: [(&str, &[&str]); 4] = [
     ("Design", &["fold", "solve", "keys"]),
     ("Study", &["plan", "run", "submit", "merge", "status"]),
-    ("Answers", &["table", "compare", "chart", "frames", "job", "export"]),
+    ("Answers", &["report", "table", "compare", "chart", "frames", "job", "export"]),
     ("Care", &["doctor", "completions"]),
 ];
 

@@ -8,7 +8,7 @@ use super::memory::Memory;
 use super::options::{
     OutputOptions, ProgressOptions, ResultsOption, SetOption, ThreadsOption, UnitsOption,
 };
-use super::{Format, changes, memory, output_error, results};
+use super::{Format, changes, memory, output_error, report, results};
 use crate::analysis::answer::Answer;
 use crate::job::executor::Solver;
 use crate::job::limits::JobLimits;
@@ -21,6 +21,7 @@ use crate::platform::quote;
 use crate::platform::stop::Stop;
 use crate::print::notes;
 use crate::print::{count, points_of_runs};
+use crate::report::DEFAULT_SIZE;
 use crate::run::progress;
 use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run, RunResult, Summary};
 use crate::run::selection::{Part, Selection};
@@ -67,6 +68,9 @@ pub(super) struct RunOptions {
     pub(super) output: OutputOptions,
     #[command(flatten)]
     pub(super) progress: ProgressOptions,
+    /// Write no report.html at the end.
+    #[arg(long)]
+    no_report: bool,
 }
 
 /// Runs `billow run`. Finished jobs are kept; the others run. After a stop at any moment the same
@@ -169,7 +173,15 @@ pub(super) fn run_study(
     let (study, points) = (&stored.study, stored.planned_runs());
     let pilots = stored.pilot_runs();
     let ended = Ended { study, root, summary: &summary, points, pilots };
-    ended.print(&answer, options.output.format(), out).map_err(output_error)?;
+    // A part of a study has no answer.
+    let is_whole = stored.results.whole().is_none();
+    let report = (!options.no_report && is_whole && summary.counts.jobs() > 0)
+        .then(|| stored.results.report_path());
+    let written = report.as_ref().map_or(Ok(Vec::new()), |path| {
+        report::write((&stored, &table, &answer), DEFAULT_SIZE, false, path)
+    });
+    ended.print(&answer, report.as_deref(), options.output.format(), out).map_err(output_error)?;
+    written?;
     result(study, &summary, &limits, root)
 }
 
@@ -185,7 +197,14 @@ struct Ended<'a> {
 }
 
 impl Ended<'_> {
-    fn print(&self, answer: &Answer, format: Format, out: &mut dyn Write) -> io::Result<()> {
+    /// Prints the end; `report` is the path of the report.
+    fn print(
+        &self,
+        answer: &Answer,
+        report: Option<&Path>,
+        format: Format,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
         let Self { study, root, summary, .. } = self;
         let (name, counts) = (&study.name, &summary.counts);
         let points = points_of_runs(study, self.points, self.pilots);
@@ -193,6 +212,7 @@ impl Ended<'_> {
             let mut json = serde_json::json!({
                 "study": name,
                 "results": root.display().to_string(),
+                "report": report.map(|path| path.display().to_string()),
                 "points": self.points,
                 "ran": summary.ran,
                 "failed": counts.failed(),
@@ -232,6 +252,9 @@ impl Ended<'_> {
             writeln!(out, "  bits     {} the same as before", count(summary.same, "job"))?;
         }
         writeln!(out, "  results  {}", root.display())?;
+        if let Some(report) = report {
+            writeln!(out, "  report   {}", report.display())?;
+        }
         crate::print::answer::print(answer, out)?;
         crate::print::answer::print_next(answer, root, out)
     }

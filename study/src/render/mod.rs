@@ -1,9 +1,11 @@
-//! Pictures as SVG text, and PNG files drawn from it.
+//! Pictures as SVG text, PNG files and animations drawn from it, and models of shapes for other programs.
 
+pub mod animation;
 pub mod crease_pattern;
 pub mod figure;
 pub mod filmstrip;
 pub mod font;
+pub mod model;
 pub mod page;
 pub mod painter;
 pub mod png;

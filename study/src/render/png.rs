@@ -24,6 +24,25 @@ static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
     Arc::new(fonts)
 });
 
+/// A picture, four bytes a pixel, row by row from the top.
+pub struct Pixels {
+    /// Pixels of a row.
+    pub width: u32,
+    /// Number of rows.
+    pub height: u32,
+    /// Red, green, blue, opacity.
+    pub rgba: Vec<u8>,
+}
+
+/// The pixels of an SVG, as [`encode`] draws it.
+///
+/// # Errors
+/// As [`encode`].
+pub fn pixels(svg: &str, dots_per_mm: f64) -> Result<Pixels, String> {
+    let drawn = drawn(svg, dots_per_mm)?;
+    Ok(Pixels { width: drawn.width(), height: drawn.height(), rgba: drawn.take() })
+}
+
 /// Draws an SVG on white with `dots_per_mm` pixels per mm of its `width` and `height`; a length without a
 /// unit is 1/96 inch, as in CSS. Texts use the family [`font::FAMILY`] or `sans-serif`; images inside the SVG
 /// are ignored.
@@ -31,6 +50,10 @@ static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
 /// # Errors
 /// An invalid SVG, a picture without pixels or with too many.
 pub fn encode(svg: &str, dots_per_mm: f64) -> Result<Vec<u8>, String> {
+    drawn(svg, dots_per_mm)?.encode_png().map_err(|error| error.to_string())
+}
+
+fn drawn(svg: &str, dots_per_mm: f64) -> Result<Pixmap, String> {
     let options = Options {
         font_family: font::FAMILY.to_owned(),
         fontdb: Arc::clone(&FONTS),
@@ -45,7 +68,7 @@ pub fn encode(svg: &str, dots_per_mm: f64) -> Result<Vec<u8>, String> {
     draw(&tree, dots_per_mm / CSS_PIXELS_PER_MM)
 }
 
-fn draw(tree: &usvg::Tree, scale: f64) -> Result<Vec<u8>, String> {
+fn draw(tree: &usvg::Tree, scale: f64) -> Result<Pixmap, String> {
     let [width, height] = [tree.size().width(), tree.size().height()]
         .map(|length| (f64::from(length) * scale).round().max(1.0));
     if !(scale > 0.0 && width * height <= MAX_PIXELS) {
@@ -62,7 +85,7 @@ fn draw(tree: &usvg::Tree, scale: f64) -> Result<Vec<u8>, String> {
     #[expect(clippy::cast_possible_truncation, reason = "usvg draws with f32")]
     let scale = scale as f32;
     resvg::render(tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
-    pixels.encode_png().map_err(|error| error.to_string())
+    Ok(pixels)
 }
 
 #[cfg(test)]
@@ -77,7 +100,7 @@ mod tests {
         )
     }
 
-    fn drawn(body: &str) -> Pixmap {
+    fn decoded(body: &str) -> Pixmap {
         Pixmap::decode_png(&encode(&svg(body), 10.0).unwrap()).unwrap()
     }
 
@@ -88,11 +111,11 @@ mod tests {
 
     #[test]
     fn a_picture_has_the_size_of_its_page_a_white_ground_and_the_same_bytes_twice() {
-        let pixels = drawn("");
+        let pixels = decoded("");
         assert_eq!((pixels.width(), pixels.height()), (400, 100));
         assert_eq!(ink(&pixels), 0);
         let square = "<rect x=\"1\" y=\"1\" width=\"3\" height=\"2\" fill=\"black\"/>";
-        assert_eq!(ink(&drawn(square)), 30 * 20);
+        assert_eq!(ink(&decoded(square)), 30 * 20);
         assert_eq!(encode(&svg(square), 7.3).unwrap(), encode(&svg(square), 7.3).unwrap());
         assert!(encode("<svg", 10.0).unwrap_err().starts_with("invalid SVG: "));
         assert!(encode(&svg(""), 1e6).unwrap_err().contains("pixels"));
@@ -102,7 +125,7 @@ mod tests {
     #[test]
     fn text_uses_the_embedded_font_and_has_the_measured_width() {
         let text = "ϕ 12.5 m³/s";
-        let pixels = drawn(&format!("<text x=\"2\" y=\"6\">{text}</text>"));
+        let pixels = decoded(&format!("<text x=\"2\" y=\"6\">{text}</text>"));
         let columns: Vec<u32> = (0..pixels.width())
             .filter(|x| (0..100).any(|y| pixels.pixel(*x, y).unwrap().red() < 128))
             .collect();
@@ -111,7 +134,7 @@ mod tests {
         assert!((measured - expected).abs() < 0.06 * expected, "{measured} {expected}");
         // Another family uses the embedded font too, not a system font.
         let generic =
-            drawn(&format!("<text x=\"2\" y=\"6\" font-family=\"sans-serif\">{text}</text>"));
+            decoded(&format!("<text x=\"2\" y=\"6\" font-family=\"sans-serif\">{text}</text>"));
         assert!(generic == pixels);
     }
 }

@@ -19,13 +19,14 @@ use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error};
 use crate::print::print_rows;
 use crate::store::results::Results;
+use crate::store::stored::Stored;
 use crate::store::table::{Table, select};
 use crate::study::{Meshes, Study};
 
 pub mod work_precision;
 
 /// Arguments of `billow chart`.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Default, clap::Args)]
 pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
@@ -190,7 +191,45 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         return work_precision::run(&opened, cost, args.output.format(), out);
     }
     opened.add_keys(&[], args.condition.as_deref());
-    let results::Opened { stored, table } = opened;
+    let mut written: Vec<PathBuf> = Vec::new();
+    draw(args, &opened.stored, &opened.table, range, &|_| true, &mut |kind, svg| {
+        if let Some(path) = out_file {
+            picture::write(path, &svg)?;
+            written.push(path.to_owned());
+        } else {
+            let folder = args.out.clone().unwrap_or_else(|| opened.stored.results.charts_path());
+            written.extend(write(&folder, &kind.file_name(), &svg)?);
+        }
+        Ok(())
+    })?;
+    print(&written, args.output.format(), out)
+}
+
+/// The charts of a study that no options choose, but for histories: each with its name and SVG.
+///
+/// # Errors
+/// Those of the charts.
+pub(super) fn of_answer(stored: &Stored<'_>, table: &Table) -> Result<Vec<(String, String)>> {
+    let mut charts = Vec::new();
+    let args = Args { quiet: QuietOption { quiet: true }, ..Args::default() };
+    let is_drawn = |kind: &ChartKind| !matches!(kind, ChartKind::History(_));
+    draw(&args, stored, table, [None; 2], &is_drawn, &mut |kind, svg| {
+        charts.push((kind.file_name(), svg));
+        Ok(())
+    })?;
+    Ok(charts)
+}
+
+/// Draws the charts that the options choose and that `is_drawn` lets through, with this range of time, and gives each to
+/// `each`.
+fn draw(
+    args: &Args,
+    stored: &Stored<'_>,
+    table: &Table,
+    range: [Option<f64>; 2],
+    is_drawn: &dyn Fn(&ChartKind) -> bool,
+    each: &mut dyn FnMut(&ChartKind, String) -> Result<()>,
+) -> Result<()> {
     let (results, study) = (&stored.results, &stored.study);
     let (name, replicates) = (study_name(results), args.condensed(study));
     let (searched, all_replicates) = (study.searched(), study.replicates());
@@ -204,7 +243,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         borders: &borders,
     });
     let limits = study.result_limits();
-    let single = Source { limits, search, ..source(args, &name, &table)? };
+    let single = Source { limits, search, ..source(args, &name, table)? };
     let is_mesh = |name: &String| name == MESH_PARAMETER;
     let meshes = if replicates.iter().any(is_mesh) { study.meshes() } else { Meshes::default() };
     let condensed =
@@ -216,7 +255,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             rows: (0..condensed.table.rows()).collect(),
             runs: Some(Replicated {
                 condensed,
-                single: &table,
+                single: table,
                 names: &replicates,
                 meshes: &meshes,
             }),
@@ -233,8 +272,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         charts
     };
     let read = |id: &JobId| results.read_history(id, stored.record(id));
-    let mut written: Vec<PathBuf> = Vec::new();
-    for (kind, source) in &charts {
+    for (kind, source) in charts.iter().filter(|(kind, _)| is_drawn(kind)) {
         let svg = match kind.svg(source, range, &read) {
             // A standard chart may not fit this study; then it shows fewer points, or is skipped.
             Err(Error::Input(error)) if !args.is_one() => {
@@ -253,15 +291,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             }
             svg => svg?,
         };
-        if let Some(path) = out_file {
-            picture::write(path, &svg)?;
-            written.push(path.to_owned());
-        } else {
-            let folder = args.out.clone().unwrap_or_else(|| results.charts_path());
-            written.extend(write(&folder, &kind.file_name(), &svg)?);
-        }
+        each(kind, svg)?;
     }
-    print(&written, args.output.format(), out)
+    Ok(())
 }
 
 /// The rows that `--jobs` or `--where` choose.

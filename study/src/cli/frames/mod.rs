@@ -1,4 +1,4 @@
-//! `billow frames`: draws the shapes of one job side by side.
+//! `billow frames`: draws the shapes of one job side by side or in motion, or writes them for other programs.
 
 use std::fmt::Write as _;
 use std::io::Write;
@@ -14,17 +14,19 @@ use crate::chart::parameters::Parameter;
 use crate::input::value::Value;
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
-use crate::platform::files::{Disk, Files, disk_error};
-use crate::print::print_rows;
+use crate::platform::files::{Disk, Files, disk_error, write_output};
+use crate::print::{Format, print_rows};
 use crate::render::filmstrip::{Colour, Filmstrip};
 use crate::render::projection::View;
 use crate::store::history_file::{self, StoredFrames};
 use crate::store::stored::Stored;
 
 mod choose;
+mod motion;
 mod values;
 
 use choose::{by_displacement, nearest};
+use motion::{Film, Model};
 
 /// Arguments of `billow frames`.
 #[derive(Debug, clap::Args)]
@@ -64,10 +66,14 @@ pub struct Args {
         allow_hyphen_values = true
     )]
     pub view: String,
-    /// Picture to write, .svg or .png [default: both, `charts/frames_JOB` in the folder of the
-    /// results, or beside the history file].
+    /// File to write: a picture, .svg or .png; the last shape, or the one at --times, as .obj or .stl; every stored shape in
+    /// motion as .glb (glTF) [default: both pictures, `charts/frames_JOB` in the folder of the results, or beside the
+    /// history file].
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    /// Write the motion in slow motion, 25 pictures a second: .gif, or .webm where ffmpeg is installed.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["out", "count", "times"])]
+    pub animate: Option<PathBuf>,
     #[command(flatten)]
     output: OutputOptions,
     #[command(flatten)]
@@ -106,7 +112,14 @@ struct Source {
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let view = view(&args.view)?;
     let source = source(args)?;
-    let pictures = pictures(args, &source)?;
+    let model = args.out.as_deref().and_then(Model::of);
+    if let (Some(Model::Obj | Model::Stl), false) = (model, args.times.len() < 2) {
+        let times = args.times.join(",");
+        return Err(refused("--times", &times, "several times for one shape", "one time"));
+    }
+    let film = args.animate.as_deref().map(Film::of).transpose()?;
+    let pictures =
+        if model.is_some() || film.is_some() { Vec::new() } else { pictures(args, &source)? };
     let stored = history_file::read_frames(&source.path)?.ok_or_else(|| Error::Disk {
         path: source.path.clone(),
         problem:
@@ -115,18 +128,33 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
                 .to_owned(),
     })?;
     let history = history_file::read(&source.path)?.history;
-    let numbers = if args.times.is_empty() {
+    let (motion, one) = (film.is_some() || model == Some(Model::Glb), model.is_some());
+    let numbers = if motion {
+        (0..stored.times().len()).collect()
+    } else if one && args.times.is_empty() {
+        vec![stored.times().len() - 1]
+    } else if args.times.is_empty() {
         by_displacement(args.count, &displacements(&stored)?)?
     } else {
         nearest(&args.times, stored.times(), args.quiet.quiet)?
     };
-    let frames: Vec<Frame> =
+    let mut frames: Vec<Frame> =
         numbers.iter().map(|number| stored.frame(*number)).collect::<Result<_>>()?;
-    let colour = colour(args.colour, &stored, &frames)?;
-    let (values, meaning) = values::below(&frames, &history);
-    let notes: Vec<String> = meaning.into_iter().collect();
     let title = args.title.clone().unwrap_or(source.title);
-    let svg = Filmstrip {
+    if let (Some(model), Some(path)) = (model, &args.out) {
+        let bytes = model.bytes(&stored, &frames, &title);
+        let bytes = bytes.map_err(|problem| Error::Disk { path: path.clone(), problem })?;
+        write_output(&Disk, path, &bytes).map_err(|error| disk_error(path, &error))?;
+        return printed(std::slice::from_ref(path), &frames, args.output.format(), out);
+    }
+    if film.is_some() {
+        frames = motion::slow(&frames);
+    }
+    let colour = colour(args.colour, &stored, &frames)?;
+    let most = if film.is_some() { usize::MAX } else { values::MAX_WITH_VALUES };
+    let (values, meaning) = values::below(&frames, &history, most);
+    let notes: Vec<String> = meaning.into_iter().collect();
+    let strip = Filmstrip {
         title: &title,
         triangles: stored.triangles(),
         storeys: stored.storeys(),
@@ -137,25 +165,36 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         values: &values,
         marks: &[],
         notes: &notes,
+    };
+    if let (Some(film), Some(path)) = (film, &args.animate) {
+        film.write(&strip, path)?;
+        return printed(std::slice::from_ref(path), &frames, args.output.format(), out);
     }
-    .svg();
+    let svg = strip.svg();
     if args.out.is_none()
         && let Some(folder) = source.out.parent().filter(|folder| !folder.as_os_str().is_empty())
     {
         Disk.create_folder(folder).map_err(|error| disk_error(folder, &error))?;
     }
-    let mut rows = Vec::with_capacity(pictures.len());
-    for path in pictures {
-        picture::write(&path, &svg)?;
-        let time = |frame: Option<&Frame>| frame.map_or(Value::Null, |f| Value::Number(f.time));
-        rows.push(vec![
+    for path in &pictures {
+        picture::write(path, &svg)?;
+    }
+    printed(&pictures, &frames, args.output.format(), out)
+}
+
+/// Prints one row for each file.
+fn printed(paths: &[PathBuf], frames: &[Frame], format: Format, out: &mut dyn Write) -> Result<()> {
+    let time = |frame: Option<&Frame>| frame.map_or(Value::Null, |f| Value::Number(f.time));
+    let row = |path: &PathBuf| {
+        vec![
             Value::Text(path.display().to_string()),
             Value::Integer(i64::try_from(frames.len()).unwrap_or(i64::MAX)),
             time(frames.first()),
             time(frames.last()),
-        ]);
-    }
-    print_rows(&["file", "frames", "from", "to"], &rows, args.output.format(), out)
+        ]
+    };
+    let rows: Vec<Vec<Value>> = paths.iter().map(row).collect();
+    print_rows(&["file", "frames", "from", "to"], &rows, format, out)
 }
 
 /// Displacement of the film from each frame to the next: root mean square over the nodes, m.
@@ -233,7 +272,11 @@ fn pictures(args: &Args, source: &Source) -> Result<Vec<PathBuf>> {
         };
         return Ok(Picture::ALL.map(path).to_vec());
     };
-    Picture::of(path)?;
+    if Picture::of(path).is_err() {
+        let value = path.display().to_string();
+        let allowed = "a file name that ends in .svg, .png, .obj, .stl or .glb; --animate writes .gif and .webm";
+        return Err(refused("--out", &value, "not a format of shapes", allowed));
+    }
     Ok(vec![path.clone()])
 }
 

@@ -9,18 +9,23 @@ use crate::render::figure::unit::Unit;
 use crate::render::filmstrip::Quantity;
 
 /// Most frames with all values below them. Chosen: three lines below more shapes take their space.
-const MAX_WITH_VALUES: usize = 16;
+pub(super) const MAX_WITH_VALUES: usize = 16;
 /// Fraction of the elements whose values are within the colour scale. Chosen: a few elements at a corner of
 /// the folded film would leave one colour for all others.
 const WITHIN_SCALE: f64 = 0.99;
 
-/// The lines below each frame: time, height and pressure at its sample; and their meaning.
-pub(super) fn below(frames: &[Frame], history: &History) -> (Vec<Vec<String>>, Option<String>) {
+/// The lines below each frame: its time, and for at most `most` frames height and pressure at its sample; and their
+/// meaning.
+pub(super) fn below(
+    frames: &[Frame],
+    history: &History,
+    most: usize,
+) -> (Vec<Vec<String>>, Option<String>) {
     // The unit of most frames: the last one may be much later.
     let middle = frames.get(frames.len() / 2).map_or(0.0, |frame| frame.time);
     let seconds = Unit::of("s", middle.max(1e-3));
     let time = |frame: &Frame| seconds.after(&significant(seconds.shown(frame.time), 4));
-    if frames.len() > MAX_WITH_VALUES {
+    if frames.len() > most {
         return (frames.iter().map(|frame| vec![time(frame)]).collect(), None);
     }
     let rings = history.has_rings();
@@ -147,16 +152,21 @@ mod tests {
             });
             history.push(&row.collect::<Vec<_>>().try_into().unwrap());
         }
-        let (lines, meaning) = below(&[frame(0.0, 0.0), frame(0.02, 0.0)], &history);
+        let (lines, meaning) =
+            below(&[frame(0.0, 0.0), frame(0.02, 0.0)], &history, MAX_WITH_VALUES);
         assert_eq!(lines[0], ["t = 0 ms", "z = 0.100 m", "p = 0 Pa"]);
         assert_eq!(lines[1], ["t = 20 ms", "z = 0.347 m", "p = 200 Pa"]);
         assert!(meaning.unwrap().contains("z_rim"));
         let without = history.without_rings();
-        assert!(below(&[frame(0.0, 0.0)], &without).1.unwrap().contains("(height)"));
+        assert!(
+            below(&[frame(0.0, 0.0)], &without, MAX_WITH_VALUES).1.unwrap().contains("(height)")
+        );
         let many: Vec<Frame> = (0..20).map(|_| frame(0.01, 0.0)).collect();
-        let late = below(&[frame(0.0, 0.0), frame(0.01, 0.0), frame(1.0, 0.0)], &without).0;
+        let late =
+            below(&[frame(0.0, 0.0), frame(0.01, 0.0), frame(1.0, 0.0)], &without, MAX_WITH_VALUES)
+                .0;
         assert_eq!(late[2][0], "t = 1000 ms");
-        assert!(below(&many, &without).0.iter().all(|lines| lines == &["10 ms"]));
+        assert!(below(&many, &without, MAX_WITH_VALUES).0.iter().all(|lines| lines == &["10 ms"]));
     }
 
     #[test]

@@ -32,78 +32,93 @@ const TOPIC_WIDTH: usize = 11;
 /// up to there, and short peaks of film that is pulled taut reach half of it.
 const MAX_PLAUSIBLE_STRAIN: f64 = 0.1;
 
-/// Prints the answer: the assumptions, the deployed jobs, the safe points, each search of a border, the jobs with the
-/// extreme values, the audit, and which value of every parameter is better.
+/// Lines of an answer about one thing.
+pub struct Topic {
+    /// What they are about, one word or two.
+    pub name: &'static str,
+    /// The lines, not wrapped.
+    pub lines: Vec<String>,
+    /// Whether long lines are wrapped in print.
+    wraps: bool,
+}
+
+/// The answer: the assumptions, the deployed jobs, the safe points, each search of a border, the jobs with the extreme
+/// values, the audit, and which value of every parameter is better. No topic is empty.
+pub fn topics(answer: &Answer) -> Vec<Topic> {
+    let deployed = match &answer.points {
+        Some(points) => safe::deployed(points, &answer.counts),
+        None => deployed(answer),
+    };
+    let wrapped = |name, lines| Topic { name, lines, wraps: true };
+    let whole = |name, lines| Topic { name, lines, wraps: false };
+    let strain = (answer.largest_strain > MAX_PLAUSIBLE_STRAIN).then(|| {
+        format!(
+            "film_stress is up to {} % of Young's modulus; the linear film model holds for a few per cent: check the \
+             unit of film.youngs_modulus, or read these jobs with care",
+            brief_number(100.0 * answer.largest_strain)
+        )
+    });
+    let mut topics = vec![
+        wrapped("answer", headline::headline(answer).into_iter().collect()),
+        wrapped("assumed", vec![answer.assumptions.join("; ")]),
+        wrapped("deployed", vec![deployed]),
+        wrapped("moving", moving(answer.still_moving).into_iter().collect()),
+        wrapped("depends", answer.sensitivity.iter().map(safe::sensitivity).collect()),
+        wrapped("safe", answer.safety.iter().map(safe::safe).collect()),
+        wrapped("mixed", safe::mixed(&answer.mixed)),
+        // The border is what a study with a search asks for, so it stands before the single jobs.
+        wrapped("border", answer.searches.iter().flat_map(border::lines).collect()),
+    ];
+    topics.extend(extremes(answer).into_iter().map(|(name, lines)| whole(name, lines)));
+    topics.push(whole("trust", answer.trust.iter().map(audit).collect()));
+    topics.push(whole("strain", strain.into_iter().collect()));
+    topics.push(wrapped("compared", comparisons::lines(answer)));
+    topics.push(wrapped("left out", comparisons::left_out(answer)));
+    topics.retain(|topic| !topic.lines.is_empty());
+    topics
+}
+
+/// Prints the question and the topics of the answer.
 pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out)?;
     if !answer.question.is_empty() {
         writeln!(out, "{}", quote::printable(&answer.question))?;
     }
-    print_topic("answer", headline::headline(answer).as_slice(), out)?;
-    print_topic("assumed", &[answer.assumptions.join("; ")], out)?;
-    let deployed = match &answer.points {
-        Some(points) => safe::deployed(points, &answer.counts),
-        None => deployed(answer),
-    };
-    print_topic("deployed", &[deployed], out)?;
-    print_topic("moving", moving(answer.still_moving).as_slice(), out)?;
-    let sensitivity = answer.sensitivity.iter().map(safe::sensitivity);
-    print_topic("depends", &sensitivity.collect::<Vec<_>>(), out)?;
-    print_topic("safe", &answer.safety.iter().map(safe::safe).collect::<Vec<_>>(), out)?;
-    print_topic("mixed", &safe::mixed(&answer.mixed), out)?;
-    // The border is what a study with a search asks for, so it stands before the single jobs.
-    let borders = answer.searches.iter().flat_map(border::lines);
-    print_topic("border", &borders.collect::<Vec<_>>(), out)?;
-    print_extremes(answer, out)?;
-    if let Some(trust) = &answer.trust {
-        writeln!(out, "  trust    {}", audit(trust))?;
-    }
-    if answer.largest_strain > MAX_PLAUSIBLE_STRAIN {
-        writeln!(
-            out,
-            "  strain   film_stress is up to {} % of Young's modulus; the linear film model holds for \
-             a few per cent: check the unit of film.youngs_modulus, or read these jobs with care",
-            brief_number(100.0 * answer.largest_strain)
-        )?;
-    }
-    print_topic("compared", &comparisons::lines(answer), out)?;
-    print_topic("left out", &comparisons::left_out(answer), out)
-}
-
-/// The lines of a topic, wrapped.
-fn print_topic(topic: &str, texts: &[String], out: &mut dyn Write) -> io::Result<()> {
-    let mut topic = topic;
-    for line in texts.iter().flat_map(|text| wrapped(text, TOPIC_WIDTH)) {
-        writeln!(out, "  {topic:<8} {line}")?;
-        topic = "";
+    for Topic { mut name, lines, wraps } in topics(answer) {
+        let split = |line: String| if wraps { wrapped(&line, TOPIC_WIDTH) } else { vec![line] };
+        for line in lines.into_iter().flat_map(split) {
+            writeln!(out, "  {name:<8} {line}")?;
+            name = "";
+        }
     }
     Ok(())
 }
 
 /// The worst values of what is limited, the fastest job, and the highest kinetic energy and velocity. Values of one job
 /// stand in one line; those of a single job are neither best nor worst.
-fn print_extremes(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
+fn extremes(answer: &Answer) -> Vec<(&'static str, Vec<String>)> {
     let is_shown = |extreme: &&Extreme| answer.worst.iter().all(|w| w.measure != extreme.measure);
     let hardest = answer.most_energy.iter().chain(&answer.hardest).filter(is_shown);
     if answer.counts.jobs() == 1 {
         let fastest = answer.fastest.iter().filter(is_shown);
         let all: Vec<&Extreme> = answer.worst.iter().chain(fastest).chain(hardest).collect();
         let values: Vec<String> = all.iter().map(|extreme| value_text(extreme)).collect();
-        let Some(first) = all.first() else { return Ok(()) };
-        return writeln!(out, "  measured {}: {}", values.join(", "), job_text(first));
+        let line = all.first().map(|first| format!("{}: {}", values.join(", "), job_text(first)));
+        return vec![("measured", line.into_iter().collect())];
     }
-    for (mut topic, extremes) in [
+    [
         ("worst", answer.worst.iter().collect::<Vec<_>>()),
         ("fastest", answer.fastest.iter().filter(is_shown).collect()),
         ("hardest", hardest.collect()),
-    ] {
-        for same in extremes.chunk_by(|a, b| a.job == b.job) {
+    ]
+    .map(|(topic, extremes): (&str, Vec<&Extreme>)| {
+        let line = |same: &[&Extreme]| {
             let values: Vec<String> = same.iter().map(|extreme| value_text(extreme)).collect();
-            writeln!(out, "  {topic:<8} {}: {}", values.join(", "), job_text(same[0]))?;
-            topic = "";
-        }
-    }
-    Ok(())
+            format!("{}: {}", values.join(", "), job_text(same[0]))
+        };
+        (topic, extremes.chunk_by(|a, b| a.job == b.job).map(line).collect())
+    })
+    .to_vec()
 }
 
 /// Prints the commands that show more.

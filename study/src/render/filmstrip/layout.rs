@@ -21,8 +21,9 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The layout with the number of columns that gives the largest scale; full rows are preferred.
-    pub(super) fn of(strip: &Filmstrip<'_>) -> Self {
+    /// The layout of this number of panels, of all shapes or one: with the number of columns that gives the largest scale;
+    /// full rows are preferred. A single panel has room for every shape.
+    pub(super) fn of(strip: &Filmstrip<'_>, panels: usize) -> Self {
         let (mut low, mut right) = ([f64::INFINITY; 2], f64::NEG_INFINITY);
         let mut tops = Vec::with_capacity(strip.frames.len());
         // Only nodes of elements: other nodes may have any position.
@@ -34,6 +35,9 @@ impl Layout {
                 (right, top) = (right.max(x), top.max(y));
             }
             tops.push(top);
+        }
+        if panels == 1 {
+            tops = vec![tops.iter().copied().fold(f64::NEG_INFINITY, f64::max)];
         }
         let lines = strip.values.iter().map(Vec::len).max().unwrap_or(0).max(1);
         let texts = LINE + VALUE_LINE * (lines - 1) as f64;
@@ -51,12 +55,11 @@ impl Layout {
         };
         // The score of a layout decreases with empty panels.
         let score = |columns: usize| {
-            let count = strip.frames.len();
-            let panels = columns * count.div_ceil(columns);
-            fitting(columns) * count as f64 / panels as f64
+            let places = columns * panels.div_ceil(columns);
+            fitting(columns) * panels as f64 / places as f64
         };
         let mut columns = 1;
-        for more in 2..=strip.frames.len() {
+        for more in 2..=panels {
             if score(more) > score(columns) {
                 columns = more;
             }

@@ -5,6 +5,8 @@
 //! and the three states of the film differ more than the shading of one state. A quantity has the colours of
 //! viridis, whose lightness increases evenly, with little shading.
 
+use std::ops::Range;
+
 use billow_solver::mechanics::material::Regime;
 use billow_solver::output::frames::Frame;
 
@@ -131,14 +133,24 @@ impl Quantity {
 impl Filmstrip<'_> {
     /// The SVG text.
     pub fn svg(&self) -> String {
-        let layout = Layout::of(self);
+        self.drawn(&Layout::of(self, self.frames.len()), 0..self.frames.len())
+    }
+
+    /// One picture for each frame, all of one size and scale.
+    pub fn pictures(&self) -> impl Iterator<Item = String> {
+        let layout = Layout::of(self, 1);
+        (0..self.frames.len()).map(move |number| self.drawn(&layout, number..number + 1))
+    }
+
+    /// A page with these frames.
+    fn drawn(&self, layout: &Layout, numbers: Range<usize>) -> String {
         let mut page = Page::new();
         let title = page::cut(self.title, LETTER, WIDTH - 2.0 * MARGIN);
         page.text([MARGIN, MARGIN + LETTER], &Letters::new(LETTER), &title);
         let middle = Letters::new(LETTER).at(Anchor::Middle);
-        for (number, frame) in self.frames.iter().enumerate() {
-            self.panel(&mut page, &layout, number, frame);
-            let [x, y] = layout.corner(number);
+        for (at, number) in numbers.enumerate() {
+            self.panel(&mut page, layout, at, number);
+            let [x, y] = layout.corner(at);
             for (line, text) in self.values.get(number).into_iter().flatten().enumerate() {
                 let under = [x + 0.5 * layout.width, y + 1.3 * LETTER + line as f64 * VALUE_LINE];
                 page.text(under, &middle, &page::cut(text, LETTER, layout.cell()));
@@ -160,8 +172,9 @@ impl Filmstrip<'_> {
         page.finish(WIDTH, y + MARGIN, self.title)
     }
 
-    /// Draws one shape. The lines between elements are thinner if there are many elements.
-    fn panel(&self, page: &mut Page, layout: &Layout, number: usize, frame: &Frame) {
+    /// Draws the shape of a frame in a panel. The lines between elements are thinner if there are many elements.
+    fn panel(&self, page: &mut Page, layout: &Layout, at: usize, number: usize) {
+        let frame = &self.frames[number];
         let facets = self.view.facets(self.triangles, frame, self.smooth);
         let line = (6.0 / (facets.len() as f64).sqrt()).clamp(0.03, 0.12);
         // Black edges are not visible on the dark end of viridis.
@@ -177,8 +190,7 @@ impl Filmstrip<'_> {
         for (index, facet) in facets.iter().enumerate() {
             // Whole hundredths of a millimetre, relative to the previous corner: short, without
             // accumulated error.
-            let corners =
-                facet.corners.map(|corner| layout.page(number, corner).map(|mm| 100.0 * mm));
+            let corners = facet.corners.map(|corner| layout.page(at, corner).map(|mm| 100.0 * mm));
             let [a, b, c] = corners.map(|corner| corner.map(f64::round));
             let d = format!(
                 "M{},{}l{},{} {},{}z",
@@ -197,7 +209,7 @@ impl Filmstrip<'_> {
                 page.path(&colour(facet.lights[0]), None, &d);
                 continue;
             }
-            let corners = facet.corners.map(|corner| layout.page(number, corner));
+            let corners = facet.corners.map(|corner| layout.page(at, corner));
             let name = format!("light{number}_{index}");
             let fill = match gradient(corners, facet.lights) {
                 None => colour(facet.lights[0]),
@@ -208,7 +220,7 @@ impl Filmstrip<'_> {
         }
         page.close();
         for (mark, place) in self.marks.iter().enumerate() {
-            let [x, y] = layout.page(number, self.view.project(*place));
+            let [x, y] = layout.page(at, self.view.project(*place));
             style::cross(page, [x, y], &MARK, MARK_SIZE);
             let letters = Letters { colour: MARK.colour, ..Letters::new(LETTER) };
             page.text([x + MARK_SIZE, y - 0.5 * LETTER], &letters, &(mark + 1).to_string());

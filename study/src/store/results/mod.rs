@@ -40,21 +40,24 @@ pub const SUBMISSION: &str = "submission";
 /// Name of the folder with the results of the tasks of a scheduler.
 pub const PARTS: &str = "parts";
 /// Names that a run writes into a results folder.
-pub const RESULT_NAMES: [&str; 11] = [
+pub const RESULT_NAMES: [&str; 12] = [
     "study.json",
     "journal",
     "jobs",
     "checkpoints",
     "summary.parquet",
     "charts",
+    REPORT,
     ATTEMPTS,
     SUBMISSION,
     PARTS,
     "damaged",
     "lock",
 ];
-/// Names that people and other commands put beside them: a page about the results, what is published of them, a report.
-pub const OTHER_NAMES: [&str; 3] = ["README.md", PUBLISHED, "report.html"];
+/// Names that people and other commands put beside them: a page about the results, what is published of them.
+pub const OTHER_NAMES: [&str; 2] = ["README.md", PUBLISHED];
+/// The page that answers a study.
+const REPORT: &str = "report.html";
 /// The folder with what is published of results; it may be there before them.
 pub const PUBLISHED: &str = "published";
 
@@ -104,6 +107,11 @@ impl<'a> Results<'a> {
     /// Path of the pictures.
     pub fn charts_path(&self) -> PathBuf {
         self.root.join("charts")
+    }
+
+    /// Path of the report.
+    pub fn report_path(&self) -> PathBuf {
+        self.root.join(REPORT)
     }
 
     /// Path of the summary table.

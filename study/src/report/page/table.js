@@ -1,0 +1,333 @@
+"use strict";
+// The table: filters, sorting, pages, and parallel coordinates over the same rows.
+
+const SCREEN_ROWS = 50;
+/** Rows on paper, at most. */
+const PAPER_ROWS = 2000;
+let pageRows = SCREEN_ROWS;
+const MAX_DRAWN = 3000;
+const MAX_AXES = 12;
+/** Calls of the other parts when what is ticked changes. */
+const onTicked = [];
+let pointOf = null;
+let passing = [];
+let entries = [];
+
+const ofPoints = () => pointOf && !state.runs;
+const isReplicate = (of) => ofPoints() && data.replicates.includes(of.name);
+const visible = () => columns.filter((each) => !hidden().includes(each.name) && !isReplicate(each));
+const hidden = () => state.hidden ?? columns.filter((each) => !each.shown && each.name !== "job").map((each) => each.name);
+
+/** Whether a row passes every filter, or every one but that of a column. */
+function passes(row, but = null) {
+  for (const [name, words] of Object.entries(state.words)) {
+    const of = column(name);
+    if (name !== but && of && !words.includes(of.text(row))) return false;
+  }
+  for (const [name, [low, high]] of Object.entries(state.ranges)) {
+    const of = column(name);
+    if (name !== but && of && !(of.cells[row] >= low && of.cells[row] <= high)) return false;
+  }
+  return true;
+}
+
+/** Rows to list: runs, or points with their runs. */
+function listed() {
+  passing = [];
+  for (let row = 0; row < data.rows; row++) if (passes(row)) passing.push(row);
+  if (!ofPoints()) {
+    entries = passing.map((row) => ({ row, runs: [row] }));
+  } else {
+    const points = new Map();
+    for (const row of passing) {
+      const point = points.get(pointOf[row]);
+      if (point) point.runs.push(row);
+      else points.set(pointOf[row], { row, runs: [row] });
+    }
+    entries = [...points.values()];
+  }
+  const by = state.sort && column(state.sort.name);
+  if (by) {
+    by.direction = state.sort.direction;
+    const key = (entry) => (by.isNumber ? middle(by, entry.runs) : entry.row);
+    entries = entries.map((entry) => ({ ...entry, key: key(entry) }));
+    entries.sort((a, b) => by.compare(a.key, b.key));
+  }
+}
+
+/** The run with the median of a measure. */
+function middle(of, runs) {
+  const known = runs.filter((row) => of.has(row)).sort((a, b) => of.cells[a] - of.cells[b]);
+  return known.length ? known[(known.length - 1) >> 1] : runs[0];
+}
+
+function cell(of, { row, runs }) {
+  if (runs.length === 1) return [of.text(row), of.isNumber ? of.error(row) : ""];
+  if (!of.isNumber) {
+    const counts = new Map();
+    for (const run of runs) counts.set(of.text(run), (counts.get(of.text(run)) ?? 0) + 1);
+    const texts = [...counts].filter(([word]) => word !== "");
+    if (texts.length === 1 && texts[0][1] === runs.length) return [texts[0][0], ""];
+    return [of.name === "job" ? `${runs.length} runs` : texts.map(([word, number]) => `${number} ${word}`).join(", "), ""];
+  }
+  const known = runs.filter((run) => of.has(run)).map((run) => of.cells[run]);
+  if (!known.length) return ["", ""];
+  const at = middle(of, runs);
+  const [least, largest] = [Math.min(...known), Math.max(...known)];
+  const range = least < largest ? ` [${shown(least)} to ${shown(largest)}]` : "";
+  return [of.text(at) + range, of.error(at)];
+}
+
+function filterWord(of, row) {
+  if (of.isNumber) state.ranges[of.name] = [of.cells[row], of.cells[row]];
+  else state.words[of.name] = [of.text(row)];
+  state.page = 0;
+  refresh();
+}
+
+function tick(runs, is) {
+  const set = new Set(state.ticked);
+  for (const row of runs) if (is) set.add(row); else set.delete(row);
+  state.ticked = [...set].sort((a, b) => a - b);
+  remember();
+  for (const call of onTicked) call();
+}
+
+function drawHead() {
+  const sorted = (of) => (state.sort?.name === of.name ? (state.sort.direction > 0 ? " ▲" : " ▼") : "");
+  const head = (of) => {
+    const turn = () => {
+      const same = state.sort?.name === of.name;
+      state.sort = same && state.sort.direction < 0 ? null : { name: of.name, direction: same ? -1 : 1 };
+      refresh();
+    };
+    const order = { " ▲": "ascending", " ▼": "descending" }[sorted(of)];
+    return element("th", { scope: "col", class: of.isNumber ? "" : "word", "aria-sort": order, title: of.meaning },
+      element("button", { onclick: turn }, of.label + sorted(of)));
+  };
+  byId("rows").tHead.replaceChildren(element("tr", {},
+    element("th", { scope: "col" }, "✓"), ...visible().map(head)));
+}
+
+function drawRow(entry, className = "") {
+  const { runs } = entry;
+  const ticked = runs.every((row) => state.ticked.includes(row));
+  const label = `compare ${column("job")?.text(entry.row) ?? entry.row}`;
+  const box = element("input", { type: "checkbox", checked: ticked, "aria-label": label,
+    onchange: (event) => tick(runs, event.target.checked) });
+  const open = () => {
+    const is = state.open.includes(entry.row);
+    state.open = is ? state.open.filter((row) => row !== entry.row) : [...state.open, entry.row];
+    refresh();
+  };
+  const fold = runs.length > 1
+    ? [" ", element("button", { "aria-label": "show the runs", onclick: open }, state.open.includes(entry.row) ? "−" : "+")] : [];
+  const cells = visible().map((of) => {
+    const [text, error] = cell(of, entry);
+    const click = of.role !== "measure" && runs.length === 1 || of.role === "parameter" && of.varies;
+    const inside = click && text ? element("button", { class: "value", title: "keep only this value",
+      onclick: () => filterWord(of, entry.row) }, text) : text;
+    return element("td", { class: of.isNumber ? "" : "word" }, inside, element("span", { class: "error" }, error));
+  });
+  return element("tr", { class: className }, element("td", {}, box, ...fold), ...cells);
+}
+
+function drawRows() {
+  const pages = Math.max(1, Math.ceil(entries.length / pageRows));
+  state.page = Math.min(state.page, pages - 1);
+  const from = state.page * pageRows;
+  const body = [];
+  for (const entry of entries.slice(from, from + pageRows)) {
+    body.push(drawRow(entry));
+    if (entry.runs.length > 1 && state.open.includes(entry.row)) {
+      body.push(...entry.runs.map((row) => drawRow({ row, runs: [row] }, "run")));
+    }
+  }
+  byId("rows").tBodies[0].replaceChildren(...body);
+  byId("page").textContent = `page ${state.page + 1} of ${pages}`;
+}
+
+function drawFilters() {
+  const remove = (of, name) => element("button", { "aria-label": `remove the filter of ${name}`,
+    onclick: () => { delete of[name]; refresh(); } }, "×");
+  const words = Object.entries(state.words).map(([name, all]) =>
+    element("span", { class: "chip" }, `${name} = ${all.join(", ")} `, remove(state.words, name)));
+  const ranges = Object.entries(state.ranges).map(([name, [low, high]]) =>
+    element("span", { class: "chip" }, low === high ? `${name} = ${shown(low)} `
+      : `${name} from ${shown(low)} to ${shown(high)} `, remove(state.ranges, name)));
+  const all = data.rows === 1 ? "1 row" : `${data.rows} rows`;
+  const count = passing.length === data.rows ? all : `${passing.length} of ${all}`;
+  const points = entries.length === passing.length ? "" : `, ${entries.length} points`;
+  byId("filters").replaceChildren(...words, ...ranges, element("span", { id: "count" }, count + points));
+}
+
+function drawColumns() {
+  byId("columns").replaceChildren(...columns.map((of) => {
+    const change = (event) => {
+      const now = new Set(hidden());
+      if (event.target.checked) now.delete(of.name); else now.add(of.name);
+      state.hidden = [...now];
+      refresh();
+    };
+    return element("label", { title: of.meaning },
+      element("input", { type: "checkbox", checked: !hidden().includes(of.name), onchange: change }), ` ${of.label}`);
+  }));
+}
+
+function csv() {
+  const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+  const plain = (of, row) => (of.isNumber ? (of.has(row) ? String(Number(of.cells[row].toPrecision(7))) : "") : of.text(row));
+  const rows = passing.map((row) => visible().map((of) => quoted(plain(of, row))).join(","));
+  return [visible().map((of) => quoted(of.label)).join(","), ...rows].join("\n") + "\n";
+}
+
+/** Everything that follows from filters and order. */
+function refresh() {
+  listed();
+  drawHead();
+  drawRows();
+  drawFilters();
+  drawParallel();
+  remember();
+}
+
+// Parallel coordinates.
+
+function axes() {
+  const wanted = visible().filter((of) => of.varies && of.name !== "job");
+  const first = wanted.filter((of) => of.role === "parameter");
+  return [...first, ...wanted.filter((of) => of.role === "outcome"), ...wanted.filter((of) => of.role === "measure")]
+    .slice(0, MAX_AXES);
+}
+
+function drawParallel() {
+  const shownAxes = axes();
+  const plot = byId("parallel-plot");
+  if (shownAxes.length < 2 || !data.rows) {
+    plot.replaceChildren("Parallel coordinates need two columns that vary.");
+    return;
+  }
+  const [width, height, top, bottom] = [Math.max(600, 130 * shownAxes.length), 350, 60, 18];
+  const svg = d3.select(plot).html("").append("svg").attr("viewBox", `0 0 ${width} ${height}`).attr("width", width)
+    .attr("height", height).attr("role", "img").attr("aria-label", "Parallel coordinates of parameters and measures");
+  const x = d3.scalePoint(shownAxes.map((of) => of.name), [70, width - 60]);
+  const scales = new Map(shownAxes.map((of) => [of.name, scaleOf(of, [height - bottom, top])]));
+  const by = column("safety") ?? column("verdict");
+  const groups = new Map();
+  const drawn = (rows) => (rows.length <= MAX_DRAWN ? rows
+    : Array.from({ length: MAX_DRAWN }, (_, k) => rows[Math.floor((k * rows.length) / MAX_DRAWN)]));
+  const path = (row) => shownAxes.map((of, k) => {
+    const y = of.has(row) ? scales.get(of.name)(of.isNumber ? of.cells[row] : of.text(row)) : height - 4;
+    return `${k ? "L" : "M"}${x(of.name).toFixed(1)} ${(y ?? height - 4).toFixed(1)}`;
+  }).join("");
+  const kept = new Set(passing);
+  const others = [];
+  for (let row = 0; row < data.rows; row++) if (!kept.has(row)) others.push(row);
+  svg.append("path").attr("d", drawn(others).map(path).join("")).attr("fill", "none").attr("stroke", "#ddd");
+  for (const row of drawn(passing)) {
+    const word = by ? by.text(row) || "no outcome" : "rows";
+    groups.set(word, [...(groups.get(word) ?? []), row]);
+  }
+  const order = [...groups].sort((a, b) => a[0].localeCompare(b[0]));
+  const opacity = passing.length > 300 ? 0.25 : 0.7;
+  order.forEach(([, rows], k) => svg.append("path").attr("d", rows.map(path).join("")).attr("fill", "none")
+    .attr("stroke", colourOf(k)).attr("stroke-dasharray", k ? DASHES[k % DASHES.length] : "").attr("stroke-opacity", opacity));
+  byId("parallel-legend").replaceChildren(...order.map(([word, rows], k) => legend(`${word}: ${rows.length}`, k,
+    k ? DASHES[k % DASHES.length] : "")));
+  for (const of of shownAxes) {
+    const scale = scales.get(of.name);
+    const group = svg.append("g").attr("transform", `translate(${x(of.name)},0)`);
+    const axis = d3.axisLeft(scale).ticks(6);
+    if (of.isNumber) axis.tickFormat((value) => shown(value));
+    group.call(axis);
+    const up = shownAxes.indexOf(of) % 2 ? 40 : 26;
+    group.append("text").attr("y", top - up).attr("text-anchor", "middle").attr("fill", "#1b1b1b").attr("font-size", 11)
+      .attr("cursor", "pointer").text(of.label).on("click", () => {
+        delete state.ranges[of.name];
+        delete state.words[of.name];
+        refresh();
+      });
+    if (of.isNumber && lowest(of) > 0) {
+      const is = state.log.includes(of.name);
+      group.append("text").attr("y", top - 12).attr("text-anchor", "middle").attr("fill", "#0b5394").attr("font-size", 10)
+        .attr("cursor", "pointer").text(is ? "linear" : "log").on("click", () => {
+          state.log = is ? state.log.filter((name) => name !== of.name) : [...state.log, of.name];
+          refresh();
+        });
+    }
+    const brush = d3.brushY().extent([[-12, top], [12, height - bottom]]).on("end", (event) => {
+      if (event.sourceEvent) brushed(of, scale, event.selection);
+    });
+    const made = group.append("g").attr("class", "brush").call(brush);
+    const range = state.ranges[of.name];
+    if (range && range[0] < range[1]) {
+      const ends = [scale(range[1]), scale(range[0])].map((y) => Math.min(height - bottom, Math.max(top, y)));
+      made.call(brush.move, ends);
+    }
+  }
+  byId("parallel-export").replaceChildren(...exportButtons("parallel", () => svgText(svg.node())));
+}
+
+const lowest = (of) => of.cells.reduce((low, value) => (value < low ? value : low), Infinity);
+
+function scaleOf(of, range) {
+  if (!of.isNumber) return d3.scalePoint([...of.words].filter((word) => word !== "").sort(), range).padding(0.5);
+  const [low, high] = d3.extent(of.cells);
+  const ends = low === high ? [low - 1, high + 1] : [low, high];
+  return state.log.includes(of.name) && low > 0 ? d3.scaleLog(ends, range) : d3.scaleLinear(ends, range);
+}
+
+function brushed(of, scale, selection) {
+  delete state.ranges[of.name];
+  delete state.words[of.name];
+  if (selection && of.isNumber) {
+    const [high, low] = selection.map((y) => scale.invert(y));
+    state.ranges[of.name] = [low, high];
+  } else if (selection) {
+    const inside = scale.domain().filter((word) => scale(word) >= selection[0] && scale(word) <= selection[1]);
+    state.words[of.name] = inside;
+  }
+  state.page = 0;
+  refresh();
+}
+
+/** A line of a legend. */
+function legend(text, number, dash = dashOf(number)) {
+  const line = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  d3.select(line).attr("width", 30).attr("height", 8).attr("aria-hidden", "true").append("line").attr("x2", 30).attr("y1", 4)
+    .attr("y2", 4).attr("stroke", colourOf(number)).attr("stroke-width", 2.5).attr("stroke-dasharray", dash);
+  return element("span", { class: "key" }, line, ` ${text}`);
+}
+
+function startTable() {
+  byId("runs-label").hidden = !pointOf;
+  byId("runs").checked = state.runs;
+  byId("runs").addEventListener("change", (event) => { state.runs = event.target.checked; refresh(); });
+  byId("copy").addEventListener("click", async () => {
+    try {
+      await navigator.clipboard.writeText(csv());
+      byId("copy").textContent = "Copied";
+    } catch {
+      downloadText(`${data.study}.csv`, csv(), "text/csv");
+    }
+  });
+  byId("clear").addEventListener("click", () => { state.words = {}; state.ranges = {}; refresh(); });
+  byId("page-back").addEventListener("click", () => { state.page = Math.max(0, state.page - 1); drawRows(); remember(); });
+  byId("page-on").addEventListener("click", () => { state.page += 1; drawRows(); remember(); });
+  const measures = columns.filter((of) => of.isNumber && of.role === "measure" && of.varies);
+  const limited = data.limits.map(({ measure }) => measure);
+  measures.sort((a, b) => limited.includes(b.name) - limited.includes(a.name) || (b.shown === true) - (a.shown === true));
+  byId("best-measure").append(...measures.map((of) => element("option", { value: of.name }, of.label)));
+  byId("best").addEventListener("click", () => {
+    const of = column(byId("best-measure").value);
+    if (!of) return;
+    const values = passing.filter((row) => of.has(row)).map((row) => of.cells[row]).sort((a, b) => a - b);
+    const count = Math.max(1, Math.round((values.length * byId("best-part").value) / 100));
+    if (!values.length) return;
+    state.ranges[of.name] = byId("best-end").value === "smallest"
+      ? [values[0], values[count - 1]] : [values[values.length - count], values[values.length - 1]];
+    refresh();
+  });
+  drawColumns();
+  refresh();
+}
