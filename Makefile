@@ -12,6 +12,7 @@
 # make bench    what billow costs on this machine, a few minutes
 # make slurm    a study on a Slurm cluster of two nodes on this machine, with accidents, with the program of make dist (root only)
 # make dist     a self-contained program with licences, completions and man page, as an archive in target/dist
+# make wheel    a Python wheel with that program and the module `billow`, in target/dist
 # make scale    what the commands cost with 100,000 finished piston jobs: a quarter of an hour, one table (SCALE="--jobs 1000")
 # make layers   which folder imports which: none from above, no circle
 # make check    formatting, lints, layers of the folders, avoided words, docs
@@ -32,7 +33,7 @@ READER_PACKAGES := python3 python3-venv
 BROWSER_PACKAGES := chromium python3
 SLURM_PACKAGES := slurmctld slurmd slurm-client munge procps python3
 
-.PHONY: dist study paper pareto stability validate test test-all test-long torture contact-matrix readers browser build program bench scale layers check deps dist-deps reader-deps browser-deps slurm slurm-deps fresh-check
+.PHONY: dist wheel study paper pareto stability validate test test-all test-long torture contact-matrix readers browser build program bench scale layers check deps dist-deps reader-deps browser-deps slurm slurm-deps fresh-check
 
 study: program
 	$(BILLOW) run studies/first.json
@@ -55,7 +56,7 @@ test: deps
 	$(CARGO) test $(FLAGS)
 	$(CHECKS) validate --quick
 
-test-all: test test-long readers browser slurm
+test-all: test test-long readers browser slurm wheel
 
 # Tests marked `#[ignore]` are the long tier; so are the cases `validate --quick` leaves out.
 test-long: deps reader-deps
@@ -71,7 +72,7 @@ contact-matrix: program reader-deps
 torture: deps
 	$(CARGO) test --release --locked -p billow-study --test torture -- $(TORTURE)
 
-# Opens two small studies, fresh, with h5py, xarray, pandas, pyarrow and vtk.
+# Opens two small studies, fresh, with h5py, xarray, pandas, pyarrow and vtk; uses the Python module and the notebook.
 readers: program reader-deps
 	results=$$(mktemp -d); trap 'rm -rf "$$results"' EXIT; \
 	for study in piston film; do \
@@ -79,6 +80,11 @@ readers: program reader-deps
 	    $(BILLOW) export "$$results/$$study" --out "$$results/$$study.nc" > /dev/null; \
 	    tests/readers/check.sh "$$results/$$study" "$$results/$$study.nc"; \
 	done
+	BILLOW_PROGRAM=$(BILLOW) tests/readers/check.sh --module docs/first_study.ipynb
+
+# The Python package with the program of `make dist`, checked in an environment of its own.
+wheel: dist
+	.ci/wheel.sh
 
 browser: program browser-deps
 	python3 tests/report/browser.py $(BILLOW)
