@@ -30,17 +30,17 @@ addEventListener("unhandledrejection", (event) => errors.push(String(event.reaso
 </script>"""
 HELP = """
 const find = (selector) => document.querySelector(selector);
-const all = (selector) => [...document.querySelectorAll(selector)];
+const every = (selector) => [...document.querySelectorAll(selector)];
 const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 async function until(what, name) {
   for (let k = 0; k < 400; k++) { if (what()) return; await pause(50); }
   throw new Error(`never: ${name}`);
 }
 function check(holds, what) { if (!holds) throw new Error(`not so: ${what}`); }
-const rows = () => all("#rows tbody tr");
-const heads = () => all("#rows thead th").map((head) => head.textContent.replace(/ [▲▼]$/, ""));
+const rows = () => every("#rows tbody tr");
+const heads = () => every("#rows thead th").map((head) => head.textContent.replace(/ [▲▼]$/, ""));
 const cells = (name) => rows().map((row) => row.children[heads().findIndex((head) => head.startsWith(name))].textContent);
-const head = (name) => all("#rows thead button").find((button) => button.textContent.startsWith(name));
+const head = (name) => every("#rows thead button").find((button) => button.textContent.startsWith(name));
 const numberOf = (text) => parseFloat(text.replace("−", "-"));
 function mouse(target, kind, x, y) {
   target.dispatchEvent(new MouseEvent(kind, { bubbles: true, cancelable: true, clientX: x, clientY: y, view: window }));
@@ -117,33 +117,33 @@ CASES = {
         find(".chip button").click();
         check(rows().length === 8, "the filter goes");
         // A brush on an axis filters table and lines.
-        const overlay = all("#parallel-plot .brush .overlay").at(-1).getBoundingClientRect();
+        const overlay = every("#parallel-plot .brush .overlay").at(-1).getBoundingClientRect();
         const x = overlay.left + overlay.width / 2;
-        await drag(all("#parallel-plot .brush .overlay").at(-1), [x, overlay.top + overlay.height * 0.5], [x, overlay.bottom - 1]);
+        await drag(every("#parallel-plot .brush .overlay").at(-1), [x, overlay.top + overlay.height * 0.5], [x, overlay.bottom - 1]);
         const brushed = rows().length;
         check(brushed > 0 && brushed < 8, `brushed ${brushed}`);
         find("#clear").click();
         // A logarithmic axis.
-        const log = all("#parallel-plot text").find((text) => text.textContent === "log");
+        const log = every("#parallel-plot text").find((text) => text.textContent === "log");
         mouse(log, "click", 0, 0);
-        check(state.log.length === 1 && all("#parallel-plot text").some((text) => text.textContent === "linear"), `log ${state.log}`);
+        check(state.log.length === 1 && every("#parallel-plot text").some((text) => text.textContent === "linear"), `log ${state.log}`);
         // The best quarter.
         byId("best-part").value = 25;
         byId("best").click();
         check(rows().length === 2, `best quarter: ${rows().length}`);
         find("#clear").click();
         // Columns stay away when hidden, and are remembered.
-        const box = all("#columns label").find((label) => label.textContent.trim() === "status").querySelector("input");
+        const box = every("#columns label").find((label) => label.textContent.trim() === "status").querySelector("input");
         box.click();
         check(!heads().includes("status"), "status is hidden");
         check(JSON.parse(localStorage.getItem(memory)).hidden.includes("status"), "hidden columns are remembered");
         check(csv().trim().split("\\n").length === 9 && csv().includes("mass_flow_rate (g/s)"), "CSV");
         // Ticked rows are compared.
-        for (const tick of all("#rows tbody input:checked")) tick.click();
+        for (const tick of every("#rows tbody input:checked")) tick.click();
         await until(() => find("#curve-plots").textContent.startsWith("Tick rows"), "no curves");
-        all("#rows tbody input")[0].click();
-        all("#rows tbody input")[3].click();
-        await until(() => all("#curve-legend .key").length === 2 && all("#curve-plots svg").length === 3, "two curves");
+        every("#rows tbody input")[0].click();
+        every("#rows tbody input")[3].click();
+        await until(() => every("#curve-legend .key").length === 2 && every("#curve-plots svg").length === 3, "two curves");
         // Values on hover, zoom and back.
         let zoom = find("#curve-plots .zoom .overlay");
         let area = zoom.getBoundingClientRect();
@@ -157,19 +157,21 @@ CASES = {
         mouse(find("#curve-plots .zoom .overlay"), "dblclick", area.left + 50, y);
         await until(() => state.zoom === null, "no zoom");
         // The limit is drawn.
-        all("#curve-columns label").find((label) => label.textContent.includes("kinetic_energy")).querySelector("input").click();
-        await until(() => all("#curve-plots text").some((t) => t.textContent.includes("25 J")), "the limit in the curves");
+        every("#curve-columns label").find((label) => label.textContent.includes("kinetic_energy")).querySelector("input").click();
+        await until(() => every("#curve-plots text").some((t) => t.textContent.includes("25 J")), "the limit in the curves");
         // Pictures of every kind.
-        for (const button of all("#limits figure button, #parallel-export button, #curve-plots button")) button.click();
+        for (const button of every("#limits figure button, #parallel-export button, #curve-plots button")) button.click();
         await until(() => saved.filter(([name]) => name.endsWith(".png")).length >= 4, "PNG");
         check(saved.filter(([name]) => name.endsWith(".svg")).length >= 4, "SVG");
         check(saved.some(([name, url]) => name.startsWith("parallel") && url.startsWith("data:image/png")), "PNG of the axes");
-        check(all("#charts img").length >= 2 && all("#charts img").every((img) => img.complete && img.naturalWidth > 100), "charts");
+        check(every("#charts img").length >= 2 && every("#charts img").every((img) => img.complete && img.naturalWidth > 100), "charts");
         // The film moves, turns, is cut and coloured.
         await until(() => film.panes.length === 2, "two films");
         const first = picture();
         check(first.count > 2000, `pixels ${first.count}`);
-        show(0.3);
+        byId("time-number").value = "0.3";
+        byId("time-number").dispatchEvent(new Event("input"));
+        check(state.time === 0.3 && byId("time-text").textContent.includes("stored"), byId("time-text").textContent);
         const later = picture();
         check(later.sum !== first.sum, "another time is another picture");
         byId("section").value = 50;
@@ -195,9 +197,9 @@ CASES = {
         dispatchEvent(new Event("afterprint"));
         check(!find("#study-file").checkVisibility(), "and the screen is as before");
         // Names, and no colour alone.
-        check(all("canvas, svg[role=img]").every((one) => one.getAttribute("aria-label")), "pictures have names");
-        check(all("img").every((one) => one.alt), "charts have names");
-        check(all("button").every((one) => one.textContent.trim() || one.getAttribute("aria-label")), "buttons have names");
+        check(every("canvas, svg[role=img]").every((one) => one.getAttribute("aria-label")), "pictures have names");
+        check(every("img").every((one) => one.alt), "charts have names");
+        check(every("button").every((one) => one.textContent.trim() || one.getAttribute("aria-label")), "buttons have names");
         check(find("#study-file").textContent.includes("mass_flow_rate"), "the study file");
         return { brushed, saved: saved.length };
     """),
@@ -208,7 +210,7 @@ CASES = {
         check(window.taken === undefined, "no text runs");
         check(find("#question").textContent.includes("<script>window.taken = 1</script>"), "the question is text");
         check(document.querySelectorAll("#question img, #study-file img").length === 0, "no elements from texts");
-        await until(() => all("#curve-legend .key").length === 2, "curves");
+        await until(() => every("#curve-legend .key").length === 2, "curves");
         check(find("#film").hidden && find("#shape-legend").textContent.includes("No job"), "no shapes are said");
         return {};
     """),
@@ -240,9 +242,9 @@ CASES = {
         byId("runs").click();
         check(rows().length === 6, "each run");
         byId("runs").click();
-        for (const tick of all("#rows tbody input")) if (!tick.checked) tick.click();
+        for (const tick of every("#rows tbody input")) if (!tick.checked) tick.click();
         await until(() => find("#curve-legend").textContent.includes("median and range of 3 runs"), "median and range");
-        await until(() => all("#curve-plots path[fill-opacity]").length > 0, "a band");
+        await until(() => every("#curve-plots path[fill-opacity]").length > 0, "a band");
         return {};
     """),
     "search": ({**FIRST, "design": {**FIRST["design"], "N": 6}, "solver": {"model": "storeys", "end_time": "0.4 s"},
@@ -251,8 +253,16 @@ CASES = {
                          "mass_flow_rate": {"bisect": ["0.5 g/s", "5 g/s"], "on": "safe", "tolerance": "20 %"}}}, 0, [], """
         check(find("#topics").textContent.includes("border"), "the border");
         check(find("#limit-list").textContent.includes("15 m/s"), find("#limit-list").textContent);
-        check(all("#charts img").length > 0, "its chart");
-        return { border: all("#topics dd").length };
+        check(every("#charts img").length > 0, "its chart");
+        check(every("#borders tbody tr").length === 2 && find("#borders thead").textContent.includes("g/s"), "the borders");
+        // A job of the answer is ticked and shown by a click.
+        const job = find("#topics dd button");
+        const before = state.ticked.length;
+        job.click();
+        check(every("#rows tbody tr").some((row) => row.textContent.includes(job.textContent.slice(4))), "its row is shown");
+        find("#untick").click();
+        check(before > 0 && state.ticked.length === 0, "no row is ticked");
+        return { border: every("#topics dd").length };
     """),
     "meshes": ({**FIRST, "design": {key: value for key, value in FIRST["design"].items() if key != "subdivisions"} | {"N": 6},
                 "solver": {"end_time": "0.2 s", "meshes": [2, 3]}, "grid": {"mass_flow_rate": ["2 g/s", "5 g/s"]}}, 0, [], """

@@ -25,7 +25,9 @@ const SHOWN: [&str; 10] = [
     "support_impulse",
 ];
 /// Samples of a job beside its extremes. Chosen: a line on a wide screen has no more.
-const SAMPLES: usize = 400;
+const SAMPLES: usize = 600;
+/// Columns whose motion says where samples are close together.
+const MOVING: [&str; 3] = ["z_rim", "height", "vz"];
 /// Most jobs with curves. Chosen: a reader chooses from no more.
 const MAX_JOBS: usize = 1000;
 /// Share of the size of a report that curves may take.
@@ -86,12 +88,27 @@ fn curve(row: usize, history: &StoredHistory, used: &mut BTreeSet<&'static str>)
     json
 }
 
-/// The samples that are kept, in order: equally far apart, and those with the least and largest value of each column.
+/// The samples that are kept, in order: equally far apart, half in time and half in how far the film has moved, and those
+/// with the least and largest value of each column.
 fn kept(samples: usize, columns: &[(&str, &[f64])]) -> Vec<usize> {
     let last = samples.saturating_sub(1);
-    let count = SAMPLES.min(samples).max(1);
-    let mut kept: BTreeSet<usize> =
-        (0..count).map(|k| if count > 1 { k * last / (count - 1) } else { 0 }).collect();
+    let mut travelled = vec![0.0; samples];
+    for (_, values) in columns.iter().filter(|(name, _)| MOVING.contains(name)) {
+        let length: f64 = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
+        let mut sum = 0.0;
+        for (index, pair) in values.windows(2).enumerate() {
+            sum += (pair[1] - pair[0]).abs() / length.max(f64::MIN_POSITIVE);
+            travelled[index + 1] += sum;
+        }
+    }
+    let whole = travelled.last().copied().unwrap_or(0.0);
+    let mut kept: BTreeSet<usize> = BTreeSet::new();
+    let parts = (SAMPLES / 2).min(samples).max(1);
+    for part in 0..=parts {
+        kept.insert(part * last / parts);
+        let wanted = whole * part as f64 / parts as f64;
+        kept.insert(travelled.partition_point(|travelled| *travelled < wanted));
+    }
     for (_, values) in columns {
         let largest = |sign: f64| {
             (0..samples).max_by(|a, b| (sign * values[*a]).total_cmp(&(sign * values[*b])))
@@ -112,7 +129,11 @@ mod tests {
         (values[1234], values[4321]) = (5.0, -3.0);
         let found = kept(5000, &[("vz", &values)]);
         assert!([0, 1234, 4321, 4999].iter().all(|index| found.contains(index)));
-        assert!(found.len() <= SAMPLES + 2 && found.is_sorted());
+        assert!(found.len() <= SAMPLES + 5 && found.is_sorted());
+        // Motion in a fiftieth of the time has half of the samples.
+        let moving: Vec<f64> = (0..5000).map(|k| f64::from(u32::min(k, 100))).collect();
+        let early = kept(5000, &[("z_rim", &moving)]).iter().filter(|k| **k <= 100).count();
+        assert!(early >= 100, "{early}");
         assert_eq!(kept(3, &[]), [0, 1, 2]);
         assert_eq!((kept(1, &[]), kept(0, &[])), (vec![0], vec![]));
     }

@@ -12,7 +12,7 @@ use crate::analysis::answer::Answer;
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::provenance;
-use crate::print::answer::topics;
+use crate::print::answer::{choice, topics};
 use crate::store::stored::Stored;
 use crate::store::table::Table;
 
@@ -82,6 +82,14 @@ impl Report<'_> {
             "study": study.name,
             "question": answer.question,
             "topics": topics(answer).iter().map(|t| json!([t.name, t.lines])).collect::<Vec<_>>(),
+            "choice": choice(answer),
+            "borders": answer.searches.as_ref().map(|searches| {
+                let found = searches.table();
+                json!({
+                    "parameter": searches.parameter, "criterion": searches.criterion,
+                    "rows": found.rows(), "columns": table::columns(&found, &[]),
+                })
+            }),
             "running": self.is_running,
             "rows": table.rows(),
             "columns": table::columns(table, study.result_limits()),

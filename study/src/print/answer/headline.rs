@@ -8,20 +8,20 @@ use crate::print::count;
 
 /// The line; `None` for a study without limits, and for one that searches a border: its borders say it.
 pub(super) fn headline(answer: &Answer) -> Option<String> {
+    let safety = answer.safety.as_ref().filter(|_| answer.searches.is_none())?;
+    Some(choice(answer).unwrap_or_else(|| of_points(&safety.counts)))
+}
+
+/// Which choice, as of strategies, is safe at most of its points; `None` where none is compared by the limits.
+pub fn choice(answer: &Answer) -> Option<String> {
     let safety = answer.safety.as_ref()?;
-    if answer.searches.is_some() {
-        return None;
-    }
     let is_choice = |ranking: &&Ranking| {
         ranking.basis == Basis::Limits
             && ranking.candidates.len() > 1
             && matches!(ranking.by.as_slice(), [by] if by.cell_type == CellType::Text)
     };
     let mut ranked = answer.comparisons.iter().filter_map(|(_, ranking)| ranking.as_ref().ok());
-    Some(match ranked.find(is_choice) {
-        Some(choice) => of_choice(choice, &safety.counts),
-        None => of_points(&safety.counts),
-    })
+    ranked.find(is_choice).map(|choice| of_choice(choice, &safety.counts))
 }
 
 /// "preinflate is safe at 3 of 4 points, rapid at 1 of 4".

@@ -23,6 +23,7 @@ mod headline;
 mod json;
 mod safe;
 
+pub use headline::choice;
 pub use json::json;
 
 /// Characters before the text of a line: two spaces, the topic, a space.

@@ -128,7 +128,15 @@ class Column {
   /** The cell for a person. */
   text(row) {
     if (!this.isNumber) return this.words[this.cells[row]];
-    return this.has(row) ? shown(this.cells[row]) : "";
+    return this.has(row) ? this.rounded(this.cells[row], row) : "";
+  }
+
+  /** A value with as many digits as the uncertainty of a row leaves. */
+  rounded(value, row) {
+    const error = Math.max(this.lower?.[row] ?? 0, this.upper?.[row] ?? 0);
+    if (!(error > 0)) return shown(value);
+    const step = 10 ** (Math.floor(Math.log10(error)) - 1);
+    return shown(step * Math.round(value / step));
   }
 
   /** Its uncertainty as text. */
@@ -145,8 +153,12 @@ class Column {
     return this.direction * this.text(a).localeCompare(this.text(b));
   }
 }
-const PLACES = { parameter: 1, outcome: 2, measure: 3 };
-const placeOf = (of) => (of.name === "job" ? 0 : PLACES[of.role]);
+const PLACES = { parameter: 1, outcome: 2, measure: 4 };
+const limited = data.limits.map(({ measure }) => measure);
+const placeOf = (of) => {
+  if (of.name === "job") return 0;
+  return of.name === "smallest_margin" || limited.includes(of.name) ? 3 : PLACES[of.role];
+};
 const columns = data.columns.map((json) => new Column(json)).sort((a, b) => placeOf(a) - placeOf(b));
 const column = (name) => columns.find((known) => known.name === name);
 const ready = Promise.all(columns.map((each) => each.read()));

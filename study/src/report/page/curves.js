@@ -2,7 +2,6 @@
 // Curves over time of the ticked jobs: zoom, values on hover, limits; runs of a point as their median and range.
 
 const MAX_CURVES = 32;
-const GRID = 300;
 const FIRST = ["z_rim", "height", "vz", "pressure"];
 /** Measures that are extremes of a column of the histories, with the signs of their limits. */
 const EXTREMES = {
@@ -70,7 +69,9 @@ async function line({ curves }, name) {
   const all = await Promise.all(having.map(async (curve) => [await values(curve, "time"), await values(curve, name)]));
   if (all.length === 1) return { times: all[0][0], middle: all[0][1] };
   const end = Math.min(...all.map(([times]) => times[times.length - 1]));
-  const times = Array.from({ length: GRID }, (_, k) => (end * k) / (GRID - 1));
+  // The times of the run with most samples.
+  const most = all.reduce((a, b) => (b[0].length > a[0].length ? b : a));
+  const times = Array.from(most[0]).filter((time) => time <= end);
   const sorted = times.map((time) => all.map(([t, v]) => at(t, v, time)).filter((v) => !Number.isNaN(v)).sort((a, b) => a - b));
   return {
     times, middle: sorted.map((of) => d3.median(of)), least: sorted.map((of) => of[0]), largest: sorted.map((of) => of[of.length - 1]),
@@ -85,7 +86,7 @@ async function drawCurves() {
   const groups = chosenCurves();
   const names = data.curves.columns.filter((of) => state.curves.includes(of.name));
   byId("curve-legend").replaceChildren(...groups.map(({ name, curves }, k) =>
-    legend(curves.length > 1 ? `${name} (median and range of ${curves.length} runs)` : name, k)));
+    legend(curves.length > 1 ? `${name} (median and range of ${curves.length} runs)` : name, colourOf(k), dashOf(k))));
   const all = await Promise.all(names.map((of) => Promise.all(groups.map((group) => line(group, of.name)))));
   if (mine !== drawing) return;
   redrawCursors.length = 0;
@@ -94,7 +95,8 @@ async function drawCurves() {
 }
 
 function drawCurve(of, lines, groups) {
-  const [width, height, left, bottom, top, right] = [900, 260, 70, 34, 22, 20];
+  const width = Math.min(900, Math.max(360, byId("curve-plots").clientWidth));
+  const [height, left, bottom, top, right] = [260, 70, 34, 22, 20];
   const box = element("div", { class: "plot" });
   const known = lines.filter((line) => line);
   const end = Math.max(0, ...known.map(({ times }) => times[times.length - 1]));
@@ -107,7 +109,10 @@ function drawCurve(of, lines, groups) {
     return name === of.name && limit.bound != null ? signs.map((sign) => ({ value: sign * limit.bound, text: limit.text })) : [];
   });
   for (const { value } of bounds) {
-    if (value > low - (high - low) && value < high + (high - low)) [low, high] = [Math.min(low, value), Math.max(high, value)];
+    const room = 0.1 * (high - low);
+    if (value > low - (high - low) && value < high + (high - low)) {
+      [low, high] = [Math.min(low, value - room), Math.max(high, value + room)];
+    }
   }
   if (low === high) [low, high] = [low - 1, high + 1];
   const x = d3.scaleLinear([from, to], [left, width - right]);

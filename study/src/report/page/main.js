@@ -4,6 +4,45 @@
 const RELOAD_SECONDS = 5;
 const FIRST_TICKED = 4;
 
+/** A line in which each job can be clicked: its row is ticked and shown. */
+function withJobs(line) {
+  return line.split(/(\bjob [0-9a-f]{8}\b)/).map((part) => {
+    const id = part.match(/^job ([0-9a-f]{8})$/)?.[1];
+    return id ? element("button", { class: "value", title: "tick and show its row", onclick: () => goTo(id) }, part) : part;
+  });
+}
+
+function goTo(id) {
+  const jobs = column("job");
+  for (let row = 0; row < data.rows; row++) {
+    if (!jobs.text(row).startsWith(id)) continue;
+    [state.words, state.ranges] = [{}, {}];
+    tick(ofPoints() ? all().filter((other) => pointOf[other] === pointOf[row]) : [row], true);
+    refresh();
+    state.page = Math.floor(entries.findIndex(({ runs }) => runs.includes(row)) / pageRows);
+    drawRows();
+    byId("table").scrollIntoView();
+    return;
+  }
+}
+
+const all = () => Array.from({ length: data.rows }, (_, row) => row);
+
+/** What the searches of borders found, as a table. */
+async function startBorders() {
+  if (!data.borders) return;
+  const { parameter, criterion, rows, columns: json } = data.borders;
+  const known = json.map((one) => new Column(one)).filter((of) => of.varies || ["outcome", "from", "to"].includes(of.name));
+  await Promise.all(known.map((of) => of.read()));
+  const titles = { from: "met from", to: "met to", low: "border from", high: "border to" };
+  const title = (of) => (titles[of.name] ? `${titles[of.name]}${of.unit ? ` (${of.unit})` : ""}` : of.label.replaceAll("_", " "));
+  const head = known.map((of) => element("th", { scope: "col", class: of.isNumber ? "" : "word", title: of.meaning }, title(of)));
+  const line = (row) => element("tr", {}, ...known.map((of) => element("td", { class: of.isNumber ? "" : "word" }, of.text(row))));
+  byId("borders").replaceChildren(element("table", {},
+    element("caption", {}, `Values of ${parameter} that are decided, for which: ${criterion}`), element("thead", {}, element("tr", {}, ...head)),
+    element("tbody", {}, ...Array.from({ length: rows }, (_, row) => line(row)))));
+}
+
 function startTexts() {
   document.title = `${data.study}: billow report`;
   byId("study").textContent = data.study;
@@ -13,10 +52,11 @@ function startTexts() {
   const first = (wanted) => topic(wanted)[1][0].split("; ")[0];
   const answer = topic("answer");
   const short = () => ["safe", "deployed"].filter(topic).map((name) => `${name[0].toUpperCase()}${name.slice(1)}: ${first(name)}.`);
-  byId("headline").textContent = answer ? answer[1].join(" ") : short().join(" ");
+  const choice = data.choice ? [`${data.choice[0].toUpperCase()}${data.choice.slice(1)}.`] : [];
+  byId("headline").textContent = (answer ? answer[1] : [...choice, ...short()]).join(" ");
   const others = data.topics.filter((one) => one !== answer);
   byId("topics").replaceChildren(...others.flatMap(([name, lines]) => [
-    element("dt", {}, name), element("dd", {}, ...lines.map((line) => element("div", {}, line)))]));
+    element("dt", {}, name), element("dd", {}, ...lines.map((line) => element("div", {}, ...withJobs(line))))]));
   byId("notes").replaceChildren(...data.notes.map((note) => element("li", {}, note)));
   const limit = ({ measure, text }) => element("li", {}, text.includes(measure) ? text : `${measure} ${text}`);
   byId("limit-list").replaceChildren(...data.limits.map(limit));
@@ -41,8 +81,7 @@ function tickFirst() {
   const count = Math.min(FIRST_TICKED, rows.length);
   const first = Array.from({ length: count }, (_, k) => rows[Math.floor((k * rows.length) / count)]);
   const points = new Set(first.map((row) => pointOf?.[row]));
-  const all = Array.from({ length: data.rows }, (_, row) => row);
-  state.ticked = pointOf ? all.filter((row) => points.has(pointOf[row])) : first;
+  state.ticked = pointOf ? all().filter((row) => points.has(pointOf[row])) : first;
 }
 
 /** Paper shows what is folded on the screen: all rows, and every detail. */
@@ -72,7 +111,7 @@ function follow() {
 
 async function start() {
   startTexts();
-  await ready;
+  await Promise.all([ready, startBorders()]);
   if (data.points) pointOf = await indices(data.points);
   tickFirst();
   startTable();

@@ -7,7 +7,7 @@ const PLAY_SECONDS = 8;
 /** Part of the time that is shown at first: most films move there. */
 const FIRST_TIME = 0.08;
 const shapeOf = new Map(data.shapes.jobs.map((shape) => [shape.row, shape]));
-const film = { panes: [], renderer: null, camera: null, controls: null, plane: null, playing: false, end: 0, last: 0 };
+const film = { panes: [], renderer: null, camera: null, controls: null, plane: null, left: [], playing: false, end: 0, last: 0 };
 const shapesRead = new Map();
 
 function shapeAt(row) {
@@ -148,10 +148,19 @@ function draw() {
   });
 }
 
+/** The slider moves slowly at first, where films move most. */
+const timeOf = (place) => film.end * (place / 1000) ** 2;
+
 function show(time) {
   state.time = time;
-  byId("time").value = String(film.end ? (1000 * time) / film.end : 0);
-  byId("time-text").textContent = `${shown(time)} s`;
+  byId("time").value = String(film.end ? 1000 * Math.sqrt(time / film.end) : 0);
+  if (document.activeElement !== byId("time-number")) byId("time-number").value = String(Number(time.toPrecision(4)));
+  const drawn = film.panes.map(({ shape }) => {
+    const [before, after, part] = between(shape.times, time);
+    const [from, to] = [shape.times[before], shape.times[after]].map(shown);
+    return part > 0 && part < 1 ? `between those stored at ${from} and ${to} s` : `as stored`;
+  });
+  byId("time-text").textContent = [...new Set(drawn)].length === 1 ? `(drawn ${drawn[0]})` : "(drawn between stored shapes)";
   for (const one of film.panes) place(one, time);
   draw();
   for (const call of redrawCursors) call();
@@ -198,10 +207,13 @@ async function setPanes() {
   const chosen = new Map();
   for (const row of state.ticked) {
     const shape = shapeAt(row);
-    const key = ofPoints() ? pointOf[row] : shape;
-    if (shape && !chosen.has(key)) chosen.set(key, shape);
+    const key = ofPoints() ? pointOf[row] : shape ?? `row ${row}`;
+    if (!chosen.get(key)?.shape) chosen.set(key, { row, shape });
   }
-  const shapes = [...new Set(chosen.values())].slice(0, MAX_PANES);
+  const all = [...chosen.values()];
+  const shapes = [...new Set(all.map(({ shape }) => shape).filter((shape) => shape))].slice(0, MAX_PANES);
+  film.left = all.filter(({ shape }) => !shapes.includes(shape))
+    .map(({ row, shape }) => `${label(row)} (${shape ? `only ${MAX_PANES} fit` : "no shapes in this file"})`);
   const none = data.shapes.jobs.length ? "Tick rows of the table that have shapes."
     : "No job of this study has stored frames (model piston, or outputs.frames 0).";
   byId("film").hidden = !shapes.length;
@@ -223,7 +235,8 @@ function legendOfShapes() {
   const units = { stress: "Pa", speed: "m/s", gap: "m" };
   const scale = units[state.colour] ? ` Blue is 0, red ${shown(film.largest)} ${units[state.colour]} and more.` : "";
   const names = film.panes.map(({ shape }, k) => `${k + 1}: ${label(shape.row)}`);
-  byId("shape-legend").textContent = `From the left, ${names.join("; ")}.${scale}`;
+  const left = film.left.length ? ` Not shown: ${film.left.join("; ")}.` : "";
+  byId("shape-legend").textContent = `From the upper left, ${names.join("; ")}.${scale}${left}`;
 }
 
 function step(now) {
@@ -240,6 +253,22 @@ function play(is) {
   film.last = 0;
   byId("play").textContent = is ? "Stop" : "Play";
   if (is) requestAnimationFrame(step); else remember();
+}
+
+/** The film as a picture, with time, jobs and colours below it. */
+function still() {
+  const drawn = film.renderer.domElement;
+  const lines = [`${data.study}, ${shown(state.time)} s`, ...byId("shape-legend").textContent.split(/[.;] /)];
+  const size = Math.max(14, Math.round(drawn.width / 80));
+  const canvas = element("canvas", { width: drawn.width, height: drawn.height + size * (1.4 * lines.length + 0.6) });
+  const context = canvas.getContext("2d");
+  context.fillStyle = "#fff";
+  context.fillRect(0, 0, canvas.width, canvas.height);
+  context.drawImage(drawn, 0, 0);
+  context.fillStyle = "#1b1b1b";
+  context.font = `${size}px sans-serif`;
+  lines.forEach((text, k) => context.fillText(text, size, drawn.height + size * (1.4 * k + 1.3)));
+  return canvas.toDataURL("image/png");
 }
 
 /** Plays once from the start and saves it as a film. */
@@ -271,12 +300,16 @@ function startPlayback() {
     show(state.time);
     remember();
   });
-  byId("time").addEventListener("input", () => show((film.end * byId("time").value) / 1000));
+  byId("time").addEventListener("input", () => show(timeOf(byId("time").value)));
   byId("time").addEventListener("change", remember);
+  byId("time-number").addEventListener("input", () => {
+    const time = Number(byId("time-number").value);
+    if (time >= 0 && time <= film.end) show(time);
+  });
   byId("section").addEventListener("input", cut);
   byId("play").addEventListener("click", () => play(!film.playing));
   byId("still").addEventListener("click", () => {
-    if (film.renderer) download(`${data.study}-${shown(state.time)}s.png`, film.renderer.domElement.toDataURL("image/png"));
+    if (film.renderer) download(`${data.study}-${shown(state.time)}s.png`, still());
   });
   byId("record").addEventListener("click", record);
   onTicked.push(setPanes);

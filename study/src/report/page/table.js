@@ -55,6 +55,15 @@ function listed() {
   }
 }
 
+/** Outcomes from good to bad: each has one colour and one line on every page, whatever is filtered. */
+const OUTCOMES = ["safe", "uncertain", "unsafe", "deployed", "partial", "stalled"];
+const OUTCOME_COLOURS = ["#0072b2", "#e69f00", "#a50026"];
+const outcomeOrder = (word) => (OUTCOMES.includes(word) ? OUTCOMES.indexOf(word) : OUTCOMES.length);
+const outcomeLook = (word) => {
+  const place = outcomeOrder(word);
+  return place < OUTCOMES.length ? [OUTCOME_COLOURS[place % 3], DASHES[place % 3]] : ["#666666", DASHES[3]];
+};
+
 /** The run with the median of a measure. */
 function middle(of, runs) {
   const known = runs.filter((row) => of.has(row)).sort((a, b) => of.cells[a] - of.cells[b]);
@@ -68,13 +77,14 @@ function cell(of, { row, runs }) {
     for (const run of runs) counts.set(of.text(run), (counts.get(of.text(run)) ?? 0) + 1);
     const texts = [...counts].filter(([word]) => word !== "");
     if (texts.length === 1 && texts[0][1] === runs.length) return [texts[0][0], ""];
+    texts.sort((a, b) => outcomeOrder(a[0]) - outcomeOrder(b[0]));
     return [of.name === "job" ? `${runs.length} runs` : texts.map(([word, number]) => `${number} ${word}`).join(", "), ""];
   }
   const known = runs.filter((run) => of.has(run)).map((run) => of.cells[run]);
   if (!known.length) return ["", ""];
   const at = middle(of, runs);
   const [least, largest] = [Math.min(...known), Math.max(...known)];
-  const range = least < largest ? ` [${shown(least)} to ${shown(largest)}]` : "";
+  const range = least < largest ? ` [${of.rounded(least, at)} to ${of.rounded(largest, at)}]` : "";
   return [of.text(at) + range, of.error(at)];
 }
 
@@ -129,7 +139,8 @@ function drawRow(entry, className = "") {
       onclick: () => filterWord(of, entry.row) }, text) : text;
     return element("td", { class: of.isNumber ? "" : "word" }, inside, element("span", { class: "error" }, error));
   });
-  return element("tr", { class: className }, element("td", {}, box, ...fold), ...cells);
+  const film = runs.some((row) => shapeAt(row)) ? [element("span", { title: "has shapes in motion" }, " ◆")] : [];
+  return element("tr", { class: className }, element("td", {}, box, ...film, ...fold), ...cells);
 }
 
 function drawRows() {
@@ -228,12 +239,15 @@ function drawParallel() {
     const word = by ? by.text(row) || "no outcome" : "rows";
     groups.set(word, [...(groups.get(word) ?? []), row]);
   }
-  const order = [...groups].sort((a, b) => a[0].localeCompare(b[0]));
+  for (const word of by?.words ?? []) if (word && !groups.has(word)) groups.set(word, []);
+  const order = [...groups].sort((a, b) => outcomeOrder(a[0]) - outcomeOrder(b[0]));
   const opacity = passing.length > 300 ? 0.25 : 0.7;
-  order.forEach(([, rows], k) => svg.append("path").attr("d", rows.map(path).join("")).attr("fill", "none")
-    .attr("stroke", colourOf(k)).attr("stroke-dasharray", k ? DASHES[k % DASHES.length] : "").attr("stroke-opacity", opacity));
-  byId("parallel-legend").replaceChildren(...order.map(([word, rows], k) => legend(`${word}: ${rows.length}`, k,
-    k ? DASHES[k % DASHES.length] : "")));
+  for (const [word, rows] of order) {
+    const [colour, dash] = outcomeLook(word);
+    svg.append("path").attr("d", rows.map(path).join("")).attr("fill", "none").attr("stroke", colour)
+      .attr("stroke-dasharray", dash).attr("stroke-opacity", opacity);
+  }
+  byId("parallel-legend").replaceChildren(...order.map(([word, rows]) => legend(`${word}: ${rows.length}`, ...outcomeLook(word))));
   for (const of of shownAxes) {
     const scale = scales.get(of.name);
     const group = svg.append("g").attr("transform", `translate(${x(of.name)},0)`);
@@ -292,10 +306,10 @@ function brushed(of, scale, selection) {
 }
 
 /** A line of a legend. */
-function legend(text, number, dash = dashOf(number)) {
+function legend(text, colour, dash) {
   const line = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   d3.select(line).attr("width", 30).attr("height", 8).attr("aria-hidden", "true").append("line").attr("x2", 30).attr("y1", 4)
-    .attr("y2", 4).attr("stroke", colourOf(number)).attr("stroke-width", 2.5).attr("stroke-dasharray", dash);
+    .attr("y2", 4).attr("stroke", colour).attr("stroke-width", 2.5).attr("stroke-dasharray", dash);
   return element("span", { class: "key" }, line, ` ${text}`);
 }
 
@@ -312,10 +326,10 @@ function startTable() {
     }
   });
   byId("clear").addEventListener("click", () => { state.words = {}; state.ranges = {}; refresh(); });
+  byId("untick").addEventListener("click", () => { tick(state.ticked, false); drawRows(); });
   byId("page-back").addEventListener("click", () => { state.page = Math.max(0, state.page - 1); drawRows(); remember(); });
   byId("page-on").addEventListener("click", () => { state.page += 1; drawRows(); remember(); });
   const measures = columns.filter((of) => of.isNumber && of.role === "measure" && of.varies);
-  const limited = data.limits.map(({ measure }) => measure);
   measures.sort((a, b) => limited.includes(b.name) - limited.includes(a.name) || (b.shown === true) - (a.shown === true));
   byId("best-measure").append(...measures.map((of) => element("option", { value: of.name }, of.label)));
   byId("best").addEventListener("click", () => {
