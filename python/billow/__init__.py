@@ -12,7 +12,6 @@ from __future__ import annotations
 import json
 import math
 import os
-import re
 import shutil
 import subprocess
 import sysconfig
@@ -98,7 +97,7 @@ def _call(*arguments: str | os.PathLike, allowed: tuple[int, ...] = (0,)) -> str
 def run(study: Mapping[str, Any] | str | os.PathLike, results: str | os.PathLike | None = None) -> Results:
     """Runs the jobs of a study that are not finished.
 
-    `study` is a dict with the keys of a study file, or the path of one; `results` the folder of the results, by default
+    `study` is a dict with the keys of a study file, paths in it relative to this folder, or the path of a study file; `results` the folder of the results, by default
     `results/NAME`, where NAME is the key `name` of a dict (`study` without one) or the name of the file. Failed jobs are
     rows of the table. Raises `Error` for a study that the program refuses.
     """
@@ -106,10 +105,11 @@ def run(study: Mapping[str, Any] | str | os.PathLike, results: str | os.PathLike
     if isinstance(study, Mapping):
         name = str(study.get("name", "study"))
         results = Path("results") / name if results is None else results
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / f"{name if re.fullmatch(r'[A-Za-z0-9_-]+', name) else 'study'}.json"
-            path.write_text(json.dumps(study))
-            said = _call("run", path, "--results", results, *options, allowed=(0, JOBS_FAILED))
+        # In this folder, so that paths in the study are relative to it.
+        with tempfile.NamedTemporaryFile("w", dir=".", prefix=".billow-", suffix=".json") as file:
+            json.dump({"name": name, **study}, file)
+            file.flush()
+            said = _call("run", file.name, "--results", results, *options, allowed=(0, JOBS_FAILED))
     else:
         where = [] if results is None else ["--results", results]
         said = _call("run", study, *where, *options, allowed=(0, JOBS_FAILED))
@@ -149,10 +149,12 @@ def cube(results: str | os.PathLike) -> xr.Dataset:
 def frames(results: str | os.PathLike, job: str) -> Frames:
     """The stored shapes of a job, which the first digits of its id name. Raises `KeyError` for an unknown job, or one without
     shapes."""
-    ids = [name for name in table(results)["job"].unique() if name.startswith(job)]
+    ids = [name for name in table(results)["job"].dropna().unique() if job and name.startswith(job)]
     if len(ids) != 1:
         raise KeyError(f"{len(ids)} jobs begin with {job!r}")
     path = Path(os.fspath(results)) / "jobs" / ids[0][:2] / f"{ids[0]}.h5"
+    if not path.exists():
+        raise KeyError(f"job {job} has not run")
     with h5py.File(path) as file:
         if "VTKHDF" not in file:
             raise KeyError(f"job {job} has no shapes: model piston or storeys, or outputs.frames 0")

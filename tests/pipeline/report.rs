@@ -110,6 +110,13 @@ fn options_are_checked_and_a_run_can_do_without_a_page() {
     ));
     let said = folder.stdout(&["run", "grid.json", "--no-report"]);
     assert!(!said.contains("report.html") && !folder.results().join("report.html").exists());
+    // A page that cannot be written hides no answer, and fails no run.
+    fs::create_dir(folder.results().join("report.html")).unwrap();
+    let output = folder.run(&["run", "grid.json"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("deployed 1 of 1 job"));
+    assert!(stderr(&output).contains("no report") && stderr(&output).contains("billow report"));
+    fs::remove_dir(folder.results().join("report.html")).unwrap();
     folder.refuses(&["report", "--size", "0"], "--size");
     folder.refuses(&["report", "--out", "page.pdf"], ".html");
     // Nothing runs, so watching ends at once.

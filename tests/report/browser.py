@@ -237,6 +237,15 @@ CASES = {
                     "grid": {"mass_flow_rate": ["2 g/s", "5 g/s"]}}, 0, [], """
         check(rows().length === 2, "one row a point");
         check(/\\[.* to .*\\]/.test(cells("peak_kinetic_energy")[0]), cells("peak_kinetic_energy")[0]);
+        // The median is that of the table, also where a filter takes some runs of a point.
+        const of = column("peak_vz");
+        const runs = [0, 1, 2].map((row) => of.cells[row]).sort((a, b) => a - b);
+        check(measured(of, [0, 1, 2]).length === 3, "three runs count");
+        check(cell(of, entries[0])[0].startsWith(of.rounded(runs[1], middle(of, [0, 1, 2]))), cell(of, entries[0])[0]);
+        state.ranges.peak_vz = [runs[0], runs[0]];
+        refresh();
+        check(rows().length === 1 && entries[0].runs.length === 3, "a point keeps its runs");
+        find("#clear").click();
         rows()[0].querySelector("button").click();
         check(rows().length === 5, "a point opens to its runs");
         byId("runs").click();

@@ -49,7 +49,7 @@ impl Species {
     pub const CARBON_DIOXIDE: Self = Self {
         gas_constant: 188.924,
         cp: 3.5 * 188.924,
-        vibrations: [959.7, 959.7, 1917.9, 3379.8],
+        vibrations: [959.7, 959.7, 1917.9, 3379.7],
     };
 
     /// A gas of constant cp, J/(kg K).

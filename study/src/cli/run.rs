@@ -177,11 +177,24 @@ pub(super) fn run_study(
     let is_whole = stored.results.whole().is_none();
     let report = (!options.no_report && is_whole && summary.counts.jobs() > 0)
         .then(|| stored.results.report_path());
-    let written = report.as_ref().map_or(Ok(Vec::new()), |path| {
-        report::write((&stored, &table, &answer), DEFAULT_SIZE, false, path)
-    });
-    ended.print(&answer, report.as_deref(), options.output.format(), out).map_err(output_error)?;
-    written?;
+    ended.print(&answer, options.output.format(), out).map_err(output_error)?;
+    if let Some(path) = &report {
+        // The reader has the answer while the page is made, and also where it cannot be written.
+        out.flush().map_err(output_error)?;
+        match report::write((&stored, &table, &answer), DEFAULT_SIZE, false, path) {
+            Ok(notes) => {
+                for note in notes.iter().filter(|_| !options.progress.quiet) {
+                    eprintln!("note: report: {note}");
+                }
+                if options.output.format() == Format::Table {
+                    writeln!(out, "  report   {}", path.display()).map_err(output_error)?;
+                }
+            }
+            Err(error) => {
+                eprintln!("note: no report: {error}\n  next: billow report {}", quote::path(root));
+            }
+        }
+    }
     result(study, &summary, &limits, root)
 }
 
@@ -197,14 +210,7 @@ struct Ended<'a> {
 }
 
 impl Ended<'_> {
-    /// Prints the end; `report` is the path of the report.
-    fn print(
-        &self,
-        answer: &Answer,
-        report: Option<&Path>,
-        format: Format,
-        out: &mut dyn Write,
-    ) -> io::Result<()> {
+    fn print(&self, answer: &Answer, format: Format, out: &mut dyn Write) -> io::Result<()> {
         let Self { study, root, summary, .. } = self;
         let (name, counts) = (&study.name, &summary.counts);
         let points = points_of_runs(study, self.points, self.pilots);
@@ -212,7 +218,6 @@ impl Ended<'_> {
             let mut json = serde_json::json!({
                 "study": name,
                 "results": root.display().to_string(),
-                "report": report.map(|path| path.display().to_string()),
                 "points": self.points,
                 "ran": summary.ran,
                 "failed": counts.failed(),
@@ -252,9 +257,6 @@ impl Ended<'_> {
             writeln!(out, "  bits     {} the same as before", count(summary.same, "job"))?;
         }
         writeln!(out, "  results  {}", root.display())?;
-        if let Some(report) = report {
-            writeln!(out, "  report   {}", report.display())?;
-        }
         crate::print::answer::print(answer, out)?;
         crate::print::answer::print_next(answer, root, out)
     }

@@ -46,13 +46,24 @@ pub fn webm(
 ) -> Result<(), String> {
     let mut running = None;
     for picture in pictures {
-        let Pixels { width, height, rgba } = picture?;
+        let Pixels { width, height, rgba } = match picture {
+            Ok(picture) => picture,
+            Err(problem) => {
+                if let Some(mut ffmpeg) = running.take() {
+                    // The pictures failed, not ffmpeg.
+                    let _ = std::process::Child::kill(&mut ffmpeg);
+                    let _ = ffmpeg.wait();
+                }
+                return Err(problem);
+            }
+        };
         if running.is_none() {
             running = Some(ffmpeg(width, height, path)?);
         }
-        if let Some(input) = running.as_mut().and_then(|ffmpeg| ffmpeg.stdin.as_mut()) {
-            // Where it ended, its own words say why.
-            let _ = input.write_all(&rgba);
+        let input = running.as_mut().and_then(|ffmpeg| ffmpeg.stdin.as_mut());
+        if input.is_some_and(|input| input.write_all(&rgba).is_err()) {
+            // It ended; its own words say why.
+            break;
         }
     }
     let Some(ffmpeg) = running else { return Err("no pictures".to_owned()) };
@@ -71,7 +82,7 @@ fn ffmpeg(width: u32, height: u32, path: &Path) -> Result<std::process::Child, S
         .args(["-video_size", &size, "-framerate", &rate, "-i", "pipe:0"])
         // The format needs even sizes.
         .args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"])
-        .args(["-c:v", "libvpx-vp9", "-b:v", "0", "-crf", "30"])
+        .args(["-c:v", "libvpx-vp9", "-b:v", "0", "-crf", "30", "-f", "webm"])
         .arg(path)
         .stdin(Stdio::piped())
         .stdout(Stdio::null())

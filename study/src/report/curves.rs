@@ -75,7 +75,7 @@ fn curve(row: usize, history: &StoredHistory, used: &mut BTreeSet<&'static str>)
         .iter()
         .filter(has)
         .map(|name| (*name, history.history.column(name)))
-        .filter(|(_, values)| values.iter().any(|value| value.total_cmp(&values[0]).is_ne()))
+        .filter(|(_, values)| values.iter().any(|value| value.abs() > 0.0))
         .collect();
     let kept = kept(time.len(), &columns);
     let chosen = |values: &[f64]| -> Vec<f64> { kept.iter().map(|index| values[*index]).collect() };

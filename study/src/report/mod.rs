@@ -73,7 +73,7 @@ impl Report<'_> {
     /// The page, and what it leaves out for its size.
     ///
     /// # Errors
-    /// A history that cannot be read.
+    /// study.json cannot be read. A history that cannot be read leaves its job without curve and shape.
     pub fn html(&self) -> Result<(String, Vec<String>)> {
         let Self { stored, table, answer, .. } = self;
         let study = &stored.study;
@@ -95,7 +95,7 @@ impl Report<'_> {
             "columns": table::columns(table, study.result_limits()),
             "replicates": study.replicates(),
             "points": table::points(table, &study.replicates()),
-            "limits": table::limits(table, study.result_limits()),
+            "limits": table::limits(study.result_limits()),
             "charts": self.charts,
             "provenance": self.provenance()?,
         });

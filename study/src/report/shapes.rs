@@ -40,8 +40,7 @@ pub fn shapes(
     let mut all = Vec::new();
     let room = budget.free();
     if let Some((row, first)) = found.first() {
-        let size =
-            job(*row, first, 1, &mut meshes).map_or(0, |shape| shape.to_string().len()) as f64;
+        let size = job(*row, first, 1).map_or(0, |shape| shape.to_string().len()) as f64;
         let nodes =
             |frames: &StoredFrames| (frames.triangles().len() * frames.times().len()) as f64;
         let sum: f64 = found.iter().map(|(_, frames)| nodes(frames)).sum();
@@ -51,12 +50,16 @@ pub fn shapes(
         every = thinned.clamp(1, MAX_THINNING);
     }
     for (row, frames) in &found {
-        let Ok(shape) = job(*row, frames, every, &mut meshes) else { continue };
-        let size = shape.to_string().len() as f64;
+        let Ok(mut shape) = job(*row, frames, every) else { continue };
+        let mesh = meshes.unknown(frames);
+        let size =
+            [Some(&shape), mesh.as_ref()].into_iter().flatten().map(|json| json.to_string().len());
+        let size = size.sum::<usize>() as f64;
         if size > budget.free() {
             break;
         }
         budget.use_up(size);
+        shape["mesh"] = meshes.number(frames, mesh).into();
         all.push(shape);
     }
     let (without, jobs) = (jobs.len() - all.len(), all);
@@ -75,24 +78,30 @@ struct Meshes {
 }
 
 impl Meshes {
-    fn number(&mut self, frames: &StoredFrames) -> usize {
+    /// The mesh of a job, if no job before it has the same one.
+    fn unknown(&self, frames: &StoredFrames) -> Option<Json> {
         let triangles = frames.triangles();
-        if let Some(number) = self.known.get(triangles) {
-            return *number;
+        (!self.known.contains_key(triangles)).then(|| {
+            json!({
+                "elements": triangles.len(),
+                "triangles": packed::indices(triangles.as_flattened().iter().copied()),
+                "storeys": packed::indices(frames.storeys().iter().copied()),
+            })
+        })
+    }
+
+    /// The number of the mesh of a job, which is added where it is new.
+    fn number(&mut self, frames: &StoredFrames, new: Option<Json>) -> usize {
+        if let Some(mesh) = new {
+            self.known.insert(frames.triangles().to_vec(), self.all.len());
+            self.all.push(mesh);
         }
-        let number = self.all.len();
-        self.known.insert(triangles.to_vec(), number);
-        self.all.push(json!({
-            "elements": triangles.len(),
-            "triangles": packed::indices(triangles.as_flattened().iter().copied()),
-            "storeys": packed::indices(frames.storeys().iter().copied()),
-        }));
-        number
+        self.known.get(frames.triangles()).copied().unwrap_or(0)
     }
 }
 
 /// Every first, second, … of the frames of a job, and the last.
-fn job(row: usize, stored: &StoredFrames, every: usize, meshes: &mut Meshes) -> Result<Json> {
+fn job(row: usize, stored: &StoredFrames, every: usize) -> Result<Json> {
     let last = stored.times().len() - 1;
     let numbers = (0..=last).filter(|number| number % every == 0 || *number == last);
     let frames: Vec<Frame> = numbers.map(|number| stored.frame(number)).collect::<Result<_>>()?;
@@ -110,7 +119,7 @@ fn job(row: usize, stored: &StoredFrames, every: usize, meshes: &mut Meshes) -> 
     let gaps: Vec<f64> =
         frames.iter().flat_map(|frame| frame.gaps.iter().map(|gap| f64::from(*gap))).collect();
     let mut json = json!({
-        "row": row, "mesh": meshes.number(stored), "nodes": nodes,
+        "row": row, "nodes": nodes,
         "times": frames.iter().map(|frame| frame.time).collect::<Vec<f64>>(),
         "positions": packed::steps(&positions, 3 * nodes, FINE),
     });

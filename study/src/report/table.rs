@@ -126,11 +126,12 @@ fn words(column: &Column) -> Json {
     json!({"words": words, "codes": packed::indices(codes.into_iter())})
 }
 
-/// The point of each row, where runs repeat points.
-pub fn points(table: &Table, replicates: &[String]) -> Option<String> {
+/// The point of each row, where runs repeat points, and whether its measures count for the point.
+pub fn points(table: &Table, replicates: &[String]) -> Option<[String; 2]> {
     if replicates.is_empty() {
         return None;
     }
+    let mut counted = vec![0_u32; table.rows()];
     let rows: Vec<usize> = (0..table.rows()).collect();
     let mut points = vec![0_u32; rows.len()];
     let runs = Condensed::of(table, &rows, replicates).runs;
@@ -138,18 +139,20 @@ pub fn points(table: &Table, replicates: &[String]) -> Option<String> {
         for row in &runs.rows {
             points[*row] = point;
         }
+        for row in &runs.measured {
+            counted[*row] = 1;
+        }
     }
-    Some(packed::indices(points.into_iter()))
+    Some([points, counted].map(|values| packed::indices(values.into_iter())))
 }
 
-/// The limits of a study, bounds in the units that are shown.
-pub fn limits(table: &Table, limits: &[ResultLimit]) -> Vec<Json> {
+/// The limits of a study, bounds in SI.
+pub fn limits(limits: &[ResultLimit]) -> Vec<Json> {
     let json = |limit: &ResultLimit| {
         let name = limit.measure.name();
-        let shown = table.column(name).map(|column| &column.shown);
-        let bound = match (&limit.condition, shown) {
-            (Condition::Bound { bound, .. }, Some(unit)) => Some(unit.number(*bound)),
-            _ => None,
+        let bound = match &limit.condition {
+            Condition::Bound { bound, .. } => Some(*bound),
+            Condition::Is(_) => None,
         };
         let above = matches!(limit.condition, Condition::Bound { above: true, .. });
         json!({"measure": name, "text": limit.to_string(), "bound": bound, "above": above})

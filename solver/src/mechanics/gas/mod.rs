@@ -163,9 +163,10 @@ impl Gas {
     pub fn pressure(&self, state: GasState, volume: f64) -> f64 {
         let internal_energy = match self.heat_transfer {
             HeatTransfer::Isothermal => state.mass * self.cv * self.film_temperature,
-            // Without that of vibrations, which make no pressure.
-            HeatTransfer::Coefficient(_) if self.species.vibrates() => {
-                state.mass * self.cv * self.temperature(state)
+            // Without that of vibrations, which make no pressure. An energy below 0 shows as such a pressure.
+            HeatTransfer::Coefficient(_) if self.species.vibrates() && state.mass > 0.0 => {
+                let energy = state.internal_energy / state.mass;
+                state.mass * self.cv * self.species.temperature(energy, 0.0)
             }
             HeatTransfer::Coefficient(_) => state.internal_energy,
         };

@@ -7,9 +7,10 @@
 //! inflow: exact
 //! ```
 //!
-//! T and p are linear in U, so U1 has a closed form; with a cp of temperature T1 is found by Newton's method. θ is ½ for slow exchange; for a volume of constant
-//! mass it reproduces the decay e^−z exactly, for any z. The step reports every term of its balance, so
-//! mass and energy are conserved to rounding. The energy accounting of the film uses the same dV.
+//! T and p are linear in U, so U1 has a closed form; with a cp of temperature T1 is found by Newton's method. θ
+//! is ½ for slow exchange; for a volume of constant mass and a gas of constant cp it reproduces the decay e^−z
+//! exactly, for any z. The step reports every term of its balance, so mass and energy are conserved to rounding.
+//! The energy accounting of the film uses the same dV.
 
 use super::{Gas, GasState, MIN_EXCHANGE_TIME};
 use crate::platform::fault_injection::{Fault, Term};

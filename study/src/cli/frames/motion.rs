@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::cli::picture::refused;
 use crate::platform::error::{Error, Result};
-use crate::platform::files::{Disk, disk_error, write_output};
+use crate::platform::files::{Disk, Files, disk_error, write_output};
 use crate::render::filmstrip::Filmstrip;
 use crate::render::{animation, model, png};
 use crate::store::history_file::StoredFrames;
@@ -102,7 +102,16 @@ impl Film {
                 let bytes = animation::gif(pictures).map_err(failed)?;
                 write_output(&Disk, path, &bytes).map_err(|error| disk_error(path, &error))
             }
-            Self::Webm => animation::webm(pictures, path).map_err(failed),
+            Self::Webm => {
+                // ffmpeg writes beside the file, which is then complete or not there.
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                let part = path.with_file_name(format!(".{name}.part"));
+                let made = animation::webm(pictures, &part).map_err(failed);
+                let bytes =
+                    made.and_then(|()| Disk.read(&part).map_err(|error| disk_error(&part, &error)));
+                let _ = Disk.remove(&part);
+                write_output(&Disk, path, &bytes?).map_err(|error| disk_error(path, &error))
+            }
         }
     }
 }
@@ -123,7 +132,8 @@ pub(super) fn slow(stored: &[Frame]) -> Vec<Frame> {
             after += 1;
         }
         let [a, b] = [&stored[after - 1], &stored[after]];
-        let part = ((time - a.time) / (b.time - a.time)).clamp(0.0, 1.0);
+        let length = b.time - a.time;
+        let part = if length > 0.0 { ((time - a.time) / length).clamp(0.0, 1.0) } else { 0.0 };
         frames.push(between(a, b, part, time));
     }
     frames

@@ -36,7 +36,7 @@ struct Buffer {
 }
 
 impl Buffer {
-    /// Adds an array; returns its number. `bounds` are least and largest value of each component.
+    /// Adds an array with its description; returns its number.
     fn add(&mut self, bytes: &[u8], target: Option<u32>, mut accessor: Json) -> usize {
         let mut view =
             json!({"buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len()});

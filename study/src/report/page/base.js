@@ -51,13 +51,15 @@ const state = {
   sort: null, words: {}, ranges: {}, hidden: null, ticked: null, log: [], runs: false, open: [], page: 0, curves: null,
   zoom: null, time: null, colour: "storey", camera: null, scroll: 0,
 };
-const memory = `billow report ${data.study}`;
+const about = data.provenance.study + data.columns.map(({ name, unit }) => name + unit).join();
+const memory = `billow report ${data.study} ${[...about].reduce((sum, letter) => (31 * sum + letter.codePointAt(0)) >>> 0, 7)}`;
 try {
   Object.assign(state, JSON.parse(localStorage.getItem(memory)) ?? {});
 } catch { /* A browser may refuse to remember. */ }
 function remember() {
   try {
-    localStorage.setItem(memory, JSON.stringify(state));
+    const jobs = (rows) => rows && rows.map((row) => (typeof row === "string" ? row : column("job").text(row)));
+    localStorage.setItem(memory, JSON.stringify({ ...state, ticked: jobs(state.ticked), open: jobs(state.open) }));
   } catch { /* As above. */ }
 }
 

@@ -5,8 +5,8 @@ const MAX_CURVES = 32;
 const FIRST = ["z_rim", "height", "vz", "pressure"];
 /** Measures that are extremes of a column of the histories, with the signs of their limits. */
 const EXTREMES = {
-  peak_vz: ["vz", [1]], peak_downward_vz: ["vz", [-1]], peak_speed: ["vz", [1, -1]], peak_pressure: ["pressure", [1]],
-  largest_z_rim: ["z_rim", [1]], lowest_z_rim: ["z_rim", [1]], largest_height: ["height", [1]],
+  peak_vz: ["vz", [1]], peak_downward_vz: ["vz", [-1]], peak_pressure: ["pressure", [1]], largest_z_rim: ["z_rim", [1]],
+  largest_height: ["height", [1]],
   peak_kinetic_energy: ["kinetic_energy", [1]], peak_lid_force: ["lid_force", [1]],
 };
 const curveOf = new Map(data.curves.jobs.map((curve) => [curve.row, curve]));
@@ -106,7 +106,7 @@ function drawCurve(of, lines, groups) {
   let [low, high] = inside.length ? d3.extent(inside) : [0, 1];
   const bounds = data.limits.flatMap((limit) => {
     const [name, signs] = EXTREMES[limit.measure] ?? [];
-    return name === of.name && limit.bound != null ? signs.map((sign) => ({ value: sign * limit.bound, text: limit.text })) : [];
+    return name === of.name && limit.bound != null ? signs.map((sign) => ({ value: of.offset + of.scale * sign * limit.bound, text: limit.text })) : [];
   });
   for (const { value } of bounds) {
     const room = 0.1 * (high - low);

@@ -74,9 +74,15 @@ function startTexts() {
   byId("study-file").textContent = study;
 }
 
+/** The rows of some jobs: what the browser remembers are jobs, since rows move when a grid grows. */
+function rowsOfJobs(ids) {
+  const jobs = column("job");
+  return all().filter((row) => ids.includes(jobs.text(row)));
+}
+
 /** The rows that are ticked at first: with shapes if some have, far apart in the plan. */
 function tickFirst() {
-  if (state.ticked?.every((row) => row < data.rows)) return;
+  if (state.ticked) return;
   const rows = (data.shapes.jobs.length ? data.shapes.jobs : data.curves.jobs).map(({ row }) => row).sort((a, b) => a - b);
   const count = Math.min(FIRST_TICKED, rows.length);
   const first = Array.from({ length: count }, (_, k) => rows[Math.floor((k * rows.length) / count)]);
@@ -112,7 +118,11 @@ function follow() {
 async function start() {
   startTexts();
   await Promise.all([ready, startBorders()]);
-  if (data.points) pointOf = await indices(data.points);
+  if (data.points) {
+    [pointOf, counted] = await Promise.all(data.points.map(indices));
+    for (const row of all()) runsOf.set(pointOf[row], [...(runsOf.get(pointOf[row]) ?? []), row]);
+  }
+  for (const name of ["ticked", "open"]) if (state[name]?.length) state[name] = rowsOfJobs(state[name]);
   tickFirst();
   startTable();
   await startCurves();

@@ -7,7 +7,7 @@ const PLAY_SECONDS = 8;
 /** Part of the time that is shown at first: most films move there. */
 const FIRST_TIME = 0.08;
 const shapeOf = new Map(data.shapes.jobs.map((shape) => [shape.row, shape]));
-const film = { panes: [], renderer: null, camera: null, controls: null, plane: null, left: [], playing: false, end: 0, last: 0 };
+const film = { panes: [], renderer: null, camera: null, controls: null, plane: null, left: [], failed: false, playing: false, end: 0, last: 0 };
 const shapesRead = new Map();
 
 function shapeAt(row) {
@@ -41,7 +41,9 @@ function startRenderer() {
   try {
     film.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
   } catch {
-    canvas.replaceWith("This browser has no WebGL: the shapes in motion need it.");
+    film.failed = true;
+    byId("shape-legend").textContent = "This browser has no WebGL: the shapes in motion need it.";
+    canvas.hidden = true;
     return false;
   }
   film.renderer.setClearColor(0xffffff);
@@ -152,6 +154,7 @@ function draw() {
 const timeOf = (place) => film.end * (place / 1000) ** 2;
 
 function show(time) {
+  if (!film.panes.length) return;
   state.time = time;
   byId("time").value = String(film.end ? 1000 * Math.sqrt(time / film.end) : 0);
   if (document.activeElement !== byId("time-number")) byId("time-number").value = String(Number(time.toPrecision(4)));
@@ -216,10 +219,10 @@ async function setPanes() {
     .map(({ row, shape }) => `${label(row)} (${shape ? `only ${MAX_PANES} fit` : "no shapes in this file"})`);
   const none = data.shapes.jobs.length ? "Tick rows of the table that have shapes."
     : "No job of this study has stored frames (model piston, or outputs.frames 0).";
-  byId("film").hidden = !shapes.length;
+  byId("film").hidden = !shapes.length || film.failed;
   if (!shapes.length) film.panes = [];
-  byId("shape-legend").textContent = shapes.length ? "" : none;
-  if (!shapes.length || (!film.renderer && !startRenderer())) return;
+  if (!shapes.length) byId("shape-legend").textContent = none;
+  if (!shapes.length || film.failed || (!film.renderer && !startRenderer())) return;
   const read = await Promise.all(shapes.map(readShape));
   if (mine !== choosing) return;
   for (const one of film.panes) one.geometry.dispose();
@@ -232,6 +235,7 @@ async function setPanes() {
 }
 
 function legendOfShapes() {
+  if (!film.panes.length) return;
   const units = { stress: "Pa", speed: "m/s", gap: "m" };
   const scale = units[state.colour] ? ` Blue is 0, red ${shown(film.largest)} ${units[state.colour]} and more.` : "";
   const names = film.panes.map(({ shape }, k) => `${k + 1}: ${label(shape.row)}`);

@@ -10,6 +10,9 @@ const MAX_AXES = 12;
 /** Calls of the other parts when what is ticked changes. */
 const onTicked = [];
 let pointOf = null;
+/** Rows of each point, and whether the measures of a row count for its point. */
+let runsOf = new Map();
+let counted = null;
 let passing = [];
 let entries = [];
 
@@ -38,13 +41,9 @@ function listed() {
   if (!ofPoints()) {
     entries = passing.map((row) => ({ row, runs: [row] }));
   } else {
-    const points = new Map();
-    for (const row of passing) {
-      const point = points.get(pointOf[row]);
-      if (point) point.runs.push(row);
-      else points.set(pointOf[row], { row, runs: [row] });
-    }
-    entries = [...points.values()];
+    // A point with a run that passes is listed with all its runs.
+    const points = new Set(passing.map((row) => pointOf[row]));
+    entries = [...points].map((point) => ({ row: runsOf.get(point)[0], runs: runsOf.get(point) }));
   }
   const by = state.sort && column(state.sort.name);
   if (by) {
@@ -64,9 +63,15 @@ const outcomeLook = (word) => {
   return place < OUTCOMES.length ? [OUTCOME_COLOURS[place % 3], DASHES[place % 3]] : ["#666666", DASHES[3]];
 };
 
-/** The run with the median of a measure. */
+/** The runs of a point whose measure counts, from the least up. */
+function measured(of, runs) {
+  const counts = (row) => of.has(row) && (runs.length === 1 || !counted || counted[row]);
+  return runs.filter(counts).sort((a, b) => of.cells[a] - of.cells[b]);
+}
+
+/** The run in the middle. */
 function middle(of, runs) {
-  const known = runs.filter((row) => of.has(row)).sort((a, b) => of.cells[a] - of.cells[b]);
+  const known = measured(of, runs);
   return known.length ? known[(known.length - 1) >> 1] : runs[0];
 }
 
@@ -80,12 +85,14 @@ function cell(of, { row, runs }) {
     texts.sort((a, b) => outcomeOrder(a[0]) - outcomeOrder(b[0]));
     return [of.name === "job" ? `${runs.length} runs` : texts.map(([word, number]) => `${number} ${word}`).join(", "), ""];
   }
-  const known = runs.filter((run) => of.has(run)).map((run) => of.cells[run]);
+  const known = measured(of, runs).map((run) => of.cells[run]);
   if (!known.length) return ["", ""];
   const at = middle(of, runs);
-  const [least, largest] = [Math.min(...known), Math.max(...known)];
+  const [least, largest] = [known[0], known[known.length - 1]];
   const range = least < largest ? ` [${of.rounded(least, at)} to ${of.rounded(largest, at)}]` : "";
-  return [of.text(at) + range, of.error(at)];
+  // A margin of a point is its smallest.
+  const value = of.name === "smallest_margin" ? least : d3.median(known);
+  return [of.rounded(value, at) + range, of.error(at)];
 }
 
 function filterWord(of, row) {
@@ -188,8 +195,10 @@ function drawColumns() {
 function csv() {
   const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
   const plain = (of, row) => (of.isNumber ? (of.has(row) ? String(Number(of.cells[row].toPrecision(7))) : "") : of.text(row));
-  const rows = passing.map((row) => visible().map((of) => quoted(plain(of, row))).join(","));
-  return [visible().map((of) => quoted(of.label)).join(","), ...rows].join("\n") + "\n";
+  const kept = columns.filter((of) => visible().includes(of) || isReplicate(of));
+  const runs = entries.flatMap((entry) => entry.runs);
+  const rows = runs.map((row) => kept.map((of) => quoted(plain(of, row))).join(","));
+  return [kept.map((of) => quoted(of.label)).join(","), ...rows].join("\n") + "\n";
 }
 
 /** Everything that follows from filters and order. */
