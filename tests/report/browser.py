@@ -18,7 +18,7 @@ import urllib.parse
 
 CHROMIUM = [
     "chromium", "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-    "--hide-scrollbars", "--mute-audio",
+    "--hide-scrollbars", "--mute-audio", "--disable-dev-shm-usage",
 ]  # fmt: skip
 TIMEOUT = 120
 # Seconds until a picture is taken of a page.
