@@ -70,8 +70,8 @@ fn findings(avoided: &Avoided, text: &[(usize, String)]) -> Vec<usize> {
 
 /// Sources, scripts and documents of the repository.
 fn looked_at() -> Vec<PathBuf> {
-    let endings = [".rs", ".md", ".toml", ".sh", ".py", "Makefile", ".ci/run"];
-    let folders = ["solver", "study", "studies", "scenes", "tests", "docs", ".ci"];
+    let endings = [".rs", ".md", ".toml", ".sh", ".py", ".js", ".html", "Makefile", ".ci/run"];
+    let folders = ["solver", "study", "studies", "scenes", "tests", "docs", "python", ".ci"];
     let pages = [
         "README.md",
         "DESIGN.md",
@@ -87,7 +87,8 @@ fn looked_at() -> Vec<PathBuf> {
     let all = below.chain(pages.into_iter().map(PathBuf::from));
     all.filter(|path| {
         let name = path.to_string_lossy();
-        endings.iter().any(|ending| name.ends_with(ending)) && !name.contains("repository/words")
+        let ours = !name.contains("repository/words") && !name.ends_with(".min.js");
+        endings.iter().any(|ending| name.ends_with(ending)) && ours
     })
     .collect()
 }

@@ -69,7 +69,7 @@ impl Species {
 
     /// γ = cp/cv at this temperature (K).
     pub fn gamma(&self, temperature: f64) -> f64 {
-        let vibrations = self.vibration_heat(temperature);
+        let vibrations = self.vibration_heat_capacity(temperature);
         (self.cp + vibrations) / (self.cv() + vibrations)
     }
 
@@ -79,7 +79,7 @@ impl Species {
     }
 
     /// Heat capacity of the vibrations per mass at this temperature (K), J/(kg K).
-    pub fn vibration_heat(&self, temperature: f64) -> f64 {
+    pub fn vibration_heat_capacity(&self, temperature: f64) -> f64 {
         self.vibration(temperature, |x| {
             // x² e^x/(e^x − 1)², which is finite for large x.
             let half = x / (2.0 * libm::sinh(0.5 * x));
@@ -110,7 +110,7 @@ impl Species {
         }
         for _ in 0..MAX_NEWTON_STEPS {
             let excess = slope * temperature + self.vibration_energy(temperature) - energy;
-            let next = temperature - excess / (slope + self.vibration_heat(temperature));
+            let next = temperature - excess / (slope + self.vibration_heat_capacity(temperature));
             // Rounding is reached, or the energy is NaN.
             let falls = next < temperature;
             if !falls {
@@ -141,7 +141,7 @@ impl Species {
         for _ in 0..MAX_NEWTON_STEPS {
             let now = temperature * libm::exp(logarithm);
             let excess = capacity * logarithm + self.vibration_entropy(now) - before - difference;
-            let step = excess / (capacity + self.vibration_heat(now));
+            let step = excess / (capacity + self.vibration_heat_capacity(now));
             logarithm -= step;
             if step.abs() <= f64::EPSILON * logarithm.abs().max(1.0) {
                 break;
@@ -163,7 +163,7 @@ mod tests {
         for (temperature, cp) in
             [(200.0, 32.359), (300.0, 37.221), (400.0, 41.325), (600.0, 47.321)]
         {
-            let found = CARBON_DIOXIDE.cp + CARBON_DIOXIDE.vibration_heat(temperature);
+            let found = CARBON_DIOXIDE.cp + CARBON_DIOXIDE.vibration_heat_capacity(temperature);
             let expected = cp / 8.314_462_618 * CARBON_DIOXIDE.gas_constant;
             assert!((found / expected - 1.0_f64).abs() < 1e-3, "{temperature}: {found} {expected}");
         }
@@ -179,7 +179,9 @@ mod tests {
             let step = 1e-5 * temperature;
             let [above, below] = [temperature + step, temperature - step];
             let heat = (gas.vibration_energy(above) - gas.vibration_energy(below)) / (2.0 * step);
-            assert!((heat - gas.vibration_heat(temperature)).abs() < 1e-6 * gas.gas_constant);
+            assert!(
+                (heat - gas.vibration_heat_capacity(temperature)).abs() < 1e-6 * gas.gas_constant
+            );
             let entropy =
                 (gas.vibration_entropy(above) - gas.vibration_entropy(below)) / (2.0 * step);
             assert!((entropy * temperature - heat).abs() < 1e-6 * gas.gas_constant);

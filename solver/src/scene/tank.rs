@@ -147,8 +147,9 @@ mod tests {
         for window in &windows {
             let entered = window.mass_flow_rate * (window.to - window.from);
             inside += entered;
-            let heat = gas.cp * window.temperature + gas.vibration_energy(window.temperature);
-            enthalpy += entered * heat;
+            let specific_enthalpy =
+                gas.cp * window.temperature + gas.vibration_energy(window.temperature);
+            enthalpy += entered * specific_enthalpy;
         }
         let energy = |t: f64| gas.cv() * t + gas.vibration_energy(t);
         let remains = gas.after_pressure_ratio(293.0, EQUAL * 101_325.0 / 5e6);

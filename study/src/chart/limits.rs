@@ -46,13 +46,19 @@ const SERIES: [(ColumnId, &str, &[f64]); 10] = [
     (ColumnId::PeakLidForce, "lid_force", &[1.0]),
 ];
 
+/// The history column of which a measure is an extreme, and the signs of its limits there.
+pub fn series_of(measure: ColumnId) -> Option<(&'static str, &'static [f64])> {
+    let known = SERIES.iter().find(|(id, ..)| *id == measure)?;
+    Some((known.1, known.2))
+}
+
 impl<'a> Source<'a> {
     /// The bounds of a history column.
     pub(super) fn bounds_of_history(&self, column: &str) -> Vec<Bound> {
         let bounds = self.limits.iter().flat_map(|limit| {
-            let known = SERIES.iter().find(|(id, name, _)| *id == limit.measure && *name == column);
+            let known = series_of(limit.measure).filter(|(name, _)| *name == column);
             let same: &[f64] = if limit.measure.name() == column { &[1.0] } else { &[] };
-            let signs = known.map_or(same, |(.., signs)| *signs);
+            let signs = known.map_or(same, |(_, signs)| signs);
             signs.iter().filter_map(|sign| {
                 let bound = Bound::of(limit)?;
                 Some(Bound { value: sign * bound.value, ..bound })

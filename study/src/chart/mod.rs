@@ -13,6 +13,8 @@ use crate::job::row::CellType;
 use crate::platform::error::{Error, Result};
 use crate::store::table::{Column, Table};
 
+pub use self::limits::series_of;
+
 use self::borders::Searched;
 use self::parameters::Parameter;
 use self::runs::Replicated;

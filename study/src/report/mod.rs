@@ -24,13 +24,14 @@ mod table;
 /// The page, with `{{name}}` where a part goes.
 const PAGE: &str = include_str!("page/page.html");
 /// What goes into the page, in this order.
-const PARTS: [(&str, &str); 9] = [
+const PARTS: [(&str, &str); 10] = [
     ("style", include_str!("page/page.css")),
     ("licences", include_str!("vendor/LICENSES.txt")),
     ("d3", include_str!("vendor/d3.min.js")),
     ("three", include_str!("vendor/three.min.js")),
     ("base", include_str!("page/base.js")),
     ("table", include_str!("page/table.js")),
+    ("parallel", include_str!("page/parallel.js")),
     ("curves", include_str!("page/curves.js")),
     ("playback", include_str!("page/playback.js")),
     ("main", include_str!("page/main.js")),

@@ -5,13 +5,14 @@ use std::collections::BTreeMap;
 use serde_json::{Value as Json, json};
 
 use super::packed;
-use crate::analysis::compare::values;
+use crate::analysis::compare::canonical;
 use crate::analysis::replicates::Condensed;
+use crate::chart::series_of;
 use crate::input::value::Value;
 use crate::job::result_limit::{Condition, ResultLimit};
 use crate::job::row::{ColumnId, DerivedColumn};
 use crate::print::is_part;
-use crate::store::table::{Column, Table, row_column_name};
+use crate::store::table::{Column, ColumnCells, Table, row_column_name};
 
 /// Digits of a job id. Chosen: unique among a million jobs but for one in a hundred million studies.
 const ID_DIGITS: usize = 12;
@@ -26,19 +27,18 @@ const MAIN: [ColumnId; 6] = [
     ColumnId::PeakPressure,
     ColumnId::FinalHeight,
 ];
+/// Measures whose limits do not hold for every sample of a history: a mean over 5 ms, and a least value after a peak.
+const NOT_OF_SAMPLES: [ColumnId; 2] = [ColumnId::PeakSpeed, ColumnId::LowestZRim];
 /// How a run ended.
 const OUTCOMES: [ColumnId; 2] = [ColumnId::Status, ColumnId::Verdict];
 
 /// The columns of a table.
 pub fn columns(table: &Table, limits: &[ResultLimit]) -> Vec<Json> {
-    let rows: Vec<usize> = (0..table.rows()).collect();
     let parameters: Vec<&str> = table.parameters().map(|column| column.name.as_str()).collect();
-    let has_value =
-        |column: &&Column| !matches!(values(column, &rows).as_slice(), [] | [Value::Null]);
+    let has_value = |column: &&Column| column.cells.iter().any(|cell| *cell != Value::Null);
     let all: Vec<&Column> =
-        table.columns.iter().filter(|c| !is_part(table, c)).filter(has_value).collect();
-    let too_many = all.len() * rows.len() > MAX_CELLS;
-    let varies = |column: &Column| values(column, &rows).len() > 1;
+        table.columns.iter().filter(|column| !is_part(table, column)).filter(has_value).collect();
+    let too_many = all.len() * table.rows() > MAX_CELLS;
     let all = all.into_iter().filter(|column| !too_many || varies(column));
     all.map(|column| {
         let is_parameter = parameters.contains(&column.name.as_str());
@@ -66,6 +66,17 @@ pub fn columns(table: &Table, limits: &[ResultLimit]) -> Vec<Json> {
         json
     })
     .collect()
+}
+
+/// Whether a column has two different cells.
+fn varies(column: &Column) -> bool {
+    match &column.cells {
+        ColumnCells::Same(..) => false,
+        ColumnCells::Each(cells) => cells
+            .first()
+            .map(canonical)
+            .is_some_and(|first| cells.iter().any(|cell| canonical(cell) != first)),
+    }
 }
 
 fn is_number(column: &Column) -> bool {
@@ -154,8 +165,11 @@ pub fn limits(limits: &[ResultLimit]) -> Vec<Json> {
             Condition::Bound { bound, .. } => Some(*bound),
             Condition::Is(_) => None,
         };
-        let above = matches!(limit.condition, Condition::Bound { above: true, .. });
-        json!({"measure": name, "text": limit.to_string(), "bound": bound, "above": above})
+        let of_samples = !NOT_OF_SAMPLES.contains(&limit.measure);
+        let (column, signs) = series_of(limit.measure).filter(|_| of_samples).unzip();
+        json!({
+            "measure": name, "text": limit.to_string(), "bound": bound, "column": column, "signs": signs,
+        })
     };
     limits.iter().map(json).collect()
 }

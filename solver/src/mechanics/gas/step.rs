@@ -119,7 +119,7 @@ impl Gas {
                 let temperature =
                     if any_gas { self.temperature(state) } else { self.first_temperature(inflow) };
                 // m cv in the middle of the step, J/K.
-                let heat_capacity = self.cv + self.species.vibration_heat(temperature);
+                let heat_capacity = self.cv + self.species.vibration_heat_capacity(temperature);
                 let capacity = 0.5 * (state.mass + mass) * heat_capacity;
                 let rate = (coefficient * self.film_area).min(capacity / MIN_EXCHANGE_TIME);
                 let exchange = rate * time;

@@ -112,24 +112,7 @@ struct Source {
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let view = view(&args.view)?;
     let source = source(args)?;
-    let model = args.out.as_deref().and_then(Model::of);
-    if let (Some(Model::Obj | Model::Stl), false) = (model, args.times.len() < 2) {
-        let times = args.times.join(",");
-        return Err(refused("--times", &times, "several times for one shape", "one time"));
-    }
-    if model == Some(Model::Glb) && !args.times.is_empty() {
-        let times = args.times.join(",");
-        return Err(refused("--times", &times, "a motion has every stored shape", "no --times"));
-    }
-    if model.is_some() && (args.smooth || args.colour.is_some()) {
-        let option = if args.smooth { "--smooth" } else { "--colour" };
-        return Err(refused(
-            option,
-            "",
-            "is for pictures, not for a model",
-            "a file name of a picture",
-        ));
-    }
+    let model = Model::asked(args)?;
     let film = args.animate.as_deref().map(Film::of).transpose()?;
     let pictures =
         if model.is_some() || film.is_some() { Vec::new() } else { pictures(args, &source)? };

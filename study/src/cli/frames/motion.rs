@@ -5,6 +5,7 @@ use std::path::Path;
 use billow_solver::output::frames::Frame;
 use rayon::prelude::*;
 
+use super::Args;
 use crate::cli::picture::refused;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error, write_output};
@@ -40,6 +41,32 @@ impl Model {
             "glb" => Some(Self::Glb),
             _ => None,
         }
+    }
+
+    /// The model that the options ask for; `None` where they ask for pictures.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for options that are not of it.
+    pub(super) fn asked(args: &Args) -> Result<Option<Self>> {
+        let Some(model) = args.out.as_deref().and_then(Self::of) else { return Ok(None) };
+        let times = args.times.join(",");
+        if model == Self::Glb && !args.times.is_empty() {
+            return Err(refused(
+                "--times",
+                &times,
+                "a motion has every stored shape",
+                "no --times",
+            ));
+        }
+        if args.times.len() > 1 {
+            return Err(refused("--times", &times, "several times for one shape", "one time"));
+        }
+        if args.smooth || args.colour.is_some() {
+            let option = if args.smooth { "--smooth" } else { "--colour" };
+            let allowed = "a file name of a picture";
+            return Err(refused(option, "", "is for pictures, not for a model", allowed));
+        }
+        Ok(Some(model))
     }
 
     /// The bytes of the file of these frames, at least one.

@@ -105,6 +105,23 @@ const DASHES = ["", "7 3", "2 3", "8 3 2 3"];
 const colourOf = (number) => COLOURS[number % COLOURS.length];
 const dashOf = (number) => DASHES[Math.floor(number / COLOURS.length) % DASHES.length];
 
+/** Outcomes from good to bad: each has one colour and one line on every page, whatever is filtered. */
+const OUTCOMES = ["safe", "uncertain", "unsafe", "deployed", "partial", "stalled"];
+const OUTCOME_COLOURS = ["#0072b2", "#e69f00", "#a50026"];
+const outcomeOrder = (word) => (OUTCOMES.includes(word) ? OUTCOMES.indexOf(word) : OUTCOMES.length);
+const outcomeLook = (word) => {
+  const place = outcomeOrder(word);
+  return place < OUTCOMES.length ? [OUTCOME_COLOURS[place % 3], DASHES[place % 3]] : ["#666666", DASHES[3]];
+};
+
+/** A line of a legend. */
+function legend(text, colour, dash) {
+  const line = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  d3.select(line).attr("width", 30).attr("height", 8).attr("aria-hidden", "true").append("line").attr("x2", 30).attr("y1", 4)
+    .attr("y2", 4).attr("stroke", colour).attr("stroke-width", 2.5).attr("stroke-dasharray", dash);
+  return element("span", { class: "key" }, line, ` ${text}`);
+}
+
 /** A column whose cells are read. */
 class Column {
   constructor(json) {

@@ -3,12 +3,6 @@
 
 const MAX_CURVES = 32;
 const FIRST = ["z_rim", "height", "vz", "pressure"];
-/** Measures that are extremes of a column of the histories, with the signs of their limits. */
-const EXTREMES = {
-  peak_vz: ["vz", [1]], peak_downward_vz: ["vz", [-1]], peak_pressure: ["pressure", [1]], largest_z_rim: ["z_rim", [1]],
-  largest_height: ["height", [1]],
-  peak_kinetic_energy: ["kinetic_energy", [1]], peak_lid_force: ["lid_force", [1]],
-};
 const curveOf = new Map(data.curves.jobs.map((curve) => [curve.row, curve]));
 /** Curves that are unpacked. */
 const unpacked = new Map();
@@ -105,8 +99,7 @@ function drawCurve(of, lines, groups) {
     .flatMap((series) => Array.from(series).filter((value, k) => times[k] >= from && times[k] <= to && !Number.isNaN(value))));
   let [low, high] = inside.length ? d3.extent(inside) : [0, 1];
   const bounds = data.limits.flatMap((limit) => {
-    const [name, signs] = EXTREMES[limit.measure] ?? [];
-    return name === of.name && limit.bound != null ? signs.map((sign) => ({ value: of.offset + of.scale * sign * limit.bound, text: limit.text })) : [];
+    return limit.column === of.name && limit.bound != null ? limit.signs.map((sign) => ({ value: of.offset + of.scale * sign * limit.bound, text: limit.text })) : [];
   });
   for (const { value } of bounds) {
     const room = 0.1 * (high - low);
