@@ -8,7 +8,7 @@
 #               exact answer, their tables and pictures in results/pareto/published
 # make stability  where each method fails: studies/stability.json (a quarter of an hour on two cores), its maps and pictures in results/stability/published
 # make validate every reference case, with its error and its tolerance: twenty minutes on one core
-# make browser  reports of nine small studies, used in headless Chromium: a minute
+# make browser  reports of ten small studies, used in headless Chromium: a minute
 # make bench    what billow costs on this machine, a few minutes
 # make slurm    a study on a Slurm cluster of two nodes on this machine, with accidents, with the program of make dist (root only)
 # make dist     a self-contained program with licences, completions and man page, as an archive in target/dist
@@ -72,14 +72,17 @@ contact-matrix: program reader-deps
 torture: deps
 	$(CARGO) test --release --locked -p billow-study --test torture -- $(TORTURE)
 
-# Opens two small studies, fresh, with h5py, xarray, pandas, pyarrow and vtk; uses the Python module and the notebook.
+# Opens two small studies, fresh, with h5py, xarray, pandas, pyarrow and vtk; reads decks for other codes; uses the Python
+# module and the notebook.
 readers: program reader-deps
 	results=$$(mktemp -d); trap 'rm -rf "$$results"' EXIT; \
 	for study in piston film; do \
 	    $(BILLOW) run tests/readers/$$study.json --results "$$results/$$study" --quiet > /dev/null; \
 	    $(BILLOW) export "$$results/$$study" --out "$$results/$$study.nc" > /dev/null; \
 	    tests/readers/check.sh "$$results/$$study" "$$results/$$study.nc"; \
-	done
+	done; \
+	$(BILLOW) run tests/readers/deck.json --results "$$results/deck" --quiet > /dev/null; \
+	tests/readers/check.sh --deck $(BILLOW) "$$results/deck"
 	BILLOW_PROGRAM=$(BILLOW) tests/readers/check.sh --module docs/first_study.ipynb
 
 # The Python package with the program of `make dist`, checked in an environment of its own.

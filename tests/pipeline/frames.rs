@@ -186,3 +186,31 @@ fn a_motion_and_its_shapes_go_to_other_programs() {
         folder.refuses(&[&["frames", job.as_str(), "results/grid"], arguments].concat(), said);
     }
 }
+
+/// What a deck holds is checked by `tests/readers/deck.py`.
+#[test]
+fn a_deck_is_of_a_job_of_film_that_may_not_have_run() {
+    let (folder, job, _) = ran();
+    let rows = json_of(&folder, &["export", &job[..8], "--deck", "radioss", "deck"]);
+    let lines: Vec<u64> =
+        rows.as_array().unwrap().iter().map(|row| row["lines"].as_u64().unwrap()).collect();
+    let [starter, engine] = ["0000", "0001"].map(|number| {
+        let name = format!("deck/job_{}_{number}.rad", &job[..8]);
+        fs::read_to_string(folder.path().join(name)).unwrap()
+    });
+    assert_eq!(lines, [starter.lines().count() as u64, engine.lines().count() as u64]);
+    assert!(starter.ends_with("/END\n") && engine.starts_with("/RUN/job_"), "{engine}");
+    // Nothing has run: the same deck, but for what has flowed in until the release, which is nothing here.
+    fs::remove_dir_all(folder.path().join("results/grid/journal")).unwrap();
+    fs::create_dir(folder.path().join("results/grid/journal")).unwrap();
+    folder.stdout(&["export", &job[..8], "--deck", "radioss", "pending"]);
+    let pending = folder.path().join(format!("pending/job_{}_0000.rad", &job[..8]));
+    assert_eq!(fs::read_to_string(pending).unwrap(), starter);
+    let piston = TestFolder::finished(&json!({
+        "design": paper_design(2),
+        "solver": { "model": "piston", "end_time": "0.1 s" },
+        "grid": { "mass_flow_rate": ["5 g/s"] }
+    }));
+    let job = piston.rows("results/grid")[0]["job"].as_str().unwrap().to_owned();
+    piston.refuses(&["export", &job, "--deck", "dyna", "x.k"], "its model has no mesh");
+}

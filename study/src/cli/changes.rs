@@ -54,7 +54,7 @@ pub fn other_limits(of: &Stored<'_>, study: Study, path: &Path) -> Result<Option
 }
 
 /// The keys in which two studies differ, with both values: "film.thickness 2.54e-5 → 3e-5".
-fn between(from: &Study, to: &Study) -> Vec<String> {
+pub fn between(from: &Study, to: &Study) -> Vec<String> {
     const MAX_SHOWN: usize = 4;
     const GRID: &str = "grid";
     let values = |study: &Study| -> BTreeMap<String, String> {

@@ -116,7 +116,7 @@ fn print(folder: &Path, merged: &Merged, format: Format, out: &mut dyn Write) ->
         return writeln!(out, "{json}").map_err(output_error);
     }
     let next = match counts.of(Status::Pending) {
-        0 => format!("billow table {root}"),
+        0 => format!("billow report {root}"),
         pending => format!("billow run {root} runs the {} that are missing", count(pending, "job")),
     };
     let same = match merged.same {

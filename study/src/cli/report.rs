@@ -6,13 +6,14 @@ use std::time::Duration;
 
 use super::options::{QuietOption, SetOption, UnitsOption};
 use super::results::{self, Opened, StudyArgs};
-use super::{chart, output_error};
+use super::{changes, chart, output_error};
 use crate::analysis::answer::Answer;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, disk_error, write_output};
-use crate::report::{DEFAULT_SIZE, Report};
-use crate::store::stored::Stored;
+use crate::report::{Before, DEFAULT_SIZE, Report};
+use crate::store::stored::{Stored, planned};
 use crate::store::table::Table;
+use crate::study::Study;
 
 /// Time between two reports of a running study. Chosen: a reader sees the last jobs, and writing takes less.
 const INTERVAL: Duration = Duration::from_secs(5);
@@ -90,7 +91,29 @@ pub(super) fn write(
     path: &Path,
 ) -> Result<Vec<String>> {
     let charts = chart::of_answer(stored, table)?;
-    let (page, notes) = Report { stored, table, answer, charts, size, is_running }.html()?;
+    let before = before(stored, table);
+    let (page, notes) =
+        Report { stored, table, answer, charts, before, size, is_running }.html()?;
     write_output(&Disk, path, page.as_bytes()).map_err(|error| disk_error(path, &error))?;
     Ok(notes)
+}
+
+/// What the run before had, where it was of another form of the study.
+fn before(stored: &Stored<'_>, table: &Table) -> Option<Before> {
+    let study = Study::load(&stored.results.previous_path(), &[]).ok()?;
+    // At the end of a run only the records of its jobs are known.
+    let journal = stored.results.journal().ok()?;
+    let points = planned(&study, &journal);
+    let mut before = Table::of_study(&study, &points, &journal.records);
+    let names = |table: &Table| -> Vec<String> {
+        table.parameters().map(|column| column.name.clone()).collect()
+    };
+    // A key that one of the two varies has one value in the other.
+    let mut now = Table { columns: table.parameters().cloned().collect() };
+    let (ours, others) = (names(&now), names(&before));
+    results::add_keys(&stored.study, &mut now, &stored.units, &others, None);
+    results::add_keys(&study, &mut before, &stored.units, &ours, None);
+    let all: Vec<String> = ours.into_iter().chain(others).collect();
+    let changes = changes::between(&study, &stored.study);
+    Some(Before::of(table, &now, &before, &all, changes))
 }

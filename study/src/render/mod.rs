@@ -1,7 +1,9 @@
-//! Pictures as SVG text, PNG files and animations drawn from it, and models of shapes for other programs.
+//! Pictures as SVG text, PNG files and animations drawn from it, and models of shapes and decks for other
+//! programs.
 
 pub mod animation;
 pub mod crease_pattern;
+pub mod deck;
 pub mod figure;
 pub mod filmstrip;
 pub mod font;

@@ -16,10 +16,13 @@ use crate::print::answer::{choice, topics};
 use crate::store::stored::Stored;
 use crate::store::table::Table;
 
+mod before;
 mod curves;
 mod packed;
 mod shapes;
 mod table;
+
+pub use before::Before;
 
 /// The page, with `{{name}}` where a part goes.
 const PAGE: &str = include_str!("page/page.html");
@@ -49,6 +52,8 @@ pub struct Report<'a> {
     pub answer: &'a Answer,
     /// Charts of the answer: name and SVG.
     pub charts: Vec<(String, String)>,
+    /// The run before, where that was of another form of the study.
+    pub before: Option<Before>,
     /// Size that the file should not exceed, bytes.
     pub size: f64,
     /// Whether a run of the study goes on.
@@ -76,13 +81,17 @@ impl Report<'_> {
     /// # Errors
     /// study.json cannot be read. A history that cannot be read leaves its job without curve and shape.
     pub fn html(&self) -> Result<(String, Vec<String>)> {
-        let Self { stored, table, answer, .. } = self;
+        let Self { stored, table, answer, before, .. } = self;
         let study = &stored.study;
         let jobs = self.with_history();
+        let mut topics: Vec<Json> =
+            topics(answer).iter().map(|t| json!([t.name, t.lines])).collect();
+        topics.extend(before.iter().map(|before| json!(["run before", before.lines(table)])));
         let mut data = json!({
             "study": study.name,
             "question": answer.question,
-            "topics": topics(answer).iter().map(|t| json!([t.name, t.lines])).collect::<Vec<_>>(),
+            "topics": topics,
+            "before": before.as_ref().map(|before| before.columns(study.result_limits())),
             "choice": choice(answer),
             "borders": answer.searches.as_ref().map(|searches| {
                 let found = searches.table();

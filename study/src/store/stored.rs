@@ -16,6 +16,7 @@ use crate::platform::error::{Error, InputError, Result};
 use crate::platform::provenance::PHYSICS_VERSION;
 use crate::platform::quote;
 use crate::store::finished;
+use crate::store::history_file;
 use crate::store::journal::{self, Journal, Record};
 use crate::store::results::Results;
 use crate::store::table::Table;
@@ -239,6 +240,24 @@ impl<'a> Stored<'a> {
             hint: format!("billow table {} --columns job", quote::path(self.results.root())),
         }
         .into()
+    }
+
+    /// The scene of a job as JSON: the stored one if the job has run, else the one that will run.
+    ///
+    /// # Errors
+    /// A history that cannot be read, or whose scene is not JSON.
+    pub fn scene(&self, id: &JobId) -> Result<serde_json::Value> {
+        let is_stored = self.record(id).is_some_and(|record| record.file_hash.is_some());
+        let scene = match self.point(id) {
+            Some(point) if !is_stored && point.job.id == *id => {
+                serde_json::to_value(&*point.job.scene)
+            }
+            _ => serde_json::from_str(&history_file::read(&self.history_path(id)?)?.scene),
+        };
+        scene.map_err(|error| Error::Disk {
+            path: self.results.job_path(id),
+            problem: format!("its scene is not valid JSON: {error}"),
+        })
     }
 
     /// Short id and parameters of a job, for messages.

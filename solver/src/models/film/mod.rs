@@ -47,7 +47,7 @@ mod tracks;
 pub use crate::statics::Relaxation;
 pub use ladder::Ladder;
 pub use pleats::{MAX_UNIFORM, PLEATS as PLEAT_COLUMNS};
-pub use solve::{resume_scene, solve, solve_scene};
+pub use solve::{at_start, resume_scene, solve, solve_scene};
 pub use statics::{Erected, StaticState, erected, reference_scene, static_states};
 pub use tracks::{CONTACT as CONTACT_COLUMNS, FILM_STRESS_99};
 
@@ -62,7 +62,7 @@ pub fn check(scene: &Scene) -> Result<(), SceneError> {
 pub fn cost(scene: &Scene) -> Result<Cost, SceneError> {
     // Nothing runs here, and every instruction set gives the same bits.
     let instruction_set = InstructionSet::detect();
-    let (film, _) = solve::at_start(instruction_set, scene, cfl_of(scene)?, None)?;
+    let (film, _) = at_start(instruction_set, scene, cfl_of(scene)?, None)?;
     let model = FilmModel::of_shell(&film.film, &film.shell)
         .map_err(|error| SceneError::invalid("design", error))?;
     let factor = damping::stable_share(scene.film.numerical_damping);
@@ -182,7 +182,7 @@ impl FilmRun {
         cfl: f64,
         contact: Option<FilmContact>,
     ) -> Result<Self, SceneError> {
-        let (film, rings) = solve::at_start(instruction_set, scene, cfl, contact)?;
+        let (film, rings) = at_start(instruction_set, scene, cfl, contact)?;
         Self::of(&film, rings)
     }
 

@@ -70,7 +70,7 @@ fn complete(
 
 /// The film of a scene as it starts, with this contact, and the rings of a capsule. Contact without a distance has the
 /// default one of the design or of the mesh.
-pub(super) fn at_start(
+pub fn at_start(
     instruction_set: InstructionSet,
     scene: &Scene,
     cfl: f64,

@@ -79,7 +79,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let job = Inspected { stored, id, cells };
     let format = args.output.format();
     if args.scene {
-        writeln!(out, "{:#}", job.scene()?).map_err(output_error)
+        writeln!(out, "{:#}", job.stored.scene(&job.id)?).map_err(output_error)
     } else if args.history {
         history_table::print(&job, args, format, out)
     } else if args.all {

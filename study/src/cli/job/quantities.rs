@@ -4,29 +4,13 @@ use super::Inspected;
 use crate::input::keys::{self, KEYS};
 use crate::input::value::Value;
 use crate::job::row::RowColumn;
-use crate::platform::error::{Error, Result};
+use crate::platform::error::Result;
 use crate::store::history_file::{self, StoredHistory};
 use crate::store::table::Column;
 
 impl Inspected {
     pub(super) fn history(&self) -> Result<StoredHistory> {
         history_file::read(&self.stored.history_path(&self.id)?)
-    }
-
-    /// The scene of the job: the stored one if the job has run, else the one that will run.
-    pub(super) fn scene(&self) -> Result<serde_json::Value> {
-        let Self { stored, id, .. } = self;
-        let is_stored = stored.record(id).is_some_and(|record| record.file_hash.is_some());
-        let scene = match stored.point(id) {
-            Some(point) if !is_stored && point.job.id == *id => {
-                serde_json::to_value(&*point.job.scene)
-            }
-            _ => serde_json::from_str(&self.history()?.scene),
-        };
-        scene.map_err(|error| Error::Disk {
-            path: stored.results.job_path(id),
-            problem: format!("its scene is not valid JSON: {error}"),
-        })
     }
 }
 

@@ -48,7 +48,7 @@ function shown(number) {
 
 /** What the reader chose; the browser remembers it for this study. */
 const state = {
-  sort: null, words: {}, ranges: {}, hidden: null, ticked: null, log: [], runs: false, open: [], page: 0, curves: null,
+  sort: null, words: {}, ranges: {}, hidden: null, ticked: null, log: [], runs: false, before: false, open: [], page: 0, curves: null,
   zoom: null, time: null, colour: "storey", camera: null, scroll: 0,
 };
 const about = data.provenance.study + data.columns.map(({ name, unit }) => name + unit).join();
@@ -180,4 +180,6 @@ const placeOf = (of) => {
 };
 const columns = data.columns.map((json) => new Column(json)).sort((a, b) => placeOf(a) - placeOf(b));
 const column = (name) => columns.find((known) => known.name === name);
-const ready = Promise.all(columns.map((each) => each.read()));
+/** What the run before had, for the rows of this one. */
+const before = (data.before ?? []).map((json) => new Column(json));
+const ready = Promise.all([...columns, ...before].map((each) => each.read()));

@@ -84,6 +84,20 @@ function cell(of, { row, runs }) {
   return [of.rounded(value, at) + range, of.error(at)];
 }
 
+/** What the run before had, in brackets, where it differs: numbers with their change in percent. */
+function was(of, runs) {
+  const other = before.find(({ name }) => name === of.name);
+  if (!state.before || !other || of.name === "job") return "";
+  if (!of.isNumber) {
+    const words = new Set(runs.filter((row) => other.has(row) && other.text(row) !== of.text(row)).map((row) => other.text(row)));
+    return words.size ? ` (${[...words].join(", ")})` : "";
+  }
+  const [now, then] = [of, other].map((each) => d3.median(measured(each, runs).map((row) => each.cells[row])));
+  if (then === undefined || now === undefined || now === then) return "";
+  const change = then === 0 ? "" : `, ${now > then ? "+" : "−"}${shown(Number(Math.abs((100 * (now - then)) / then).toPrecision(2)))} %`;
+  return ` (${other.rounded(then, runs[0])}${change})`;
+}
+
 function filterWord(of, row) {
   if (of.isNumber) state.ranges[of.name] = [of.cells[row], of.cells[row]];
   else state.words[of.name] = [of.text(row)];
@@ -133,7 +147,7 @@ function drawRow(entry, className = "") {
     const click = of.role !== "measure" && runs.length === 1 || of.role === "parameter" && of.varies;
     const inside = click && text ? element("button", { class: "value", title: "keep only this value",
       onclick: () => filterWord(of, entry.row) }, text) : text;
-    return element("td", { class: of.isNumber ? "" : "word" }, inside, element("span", { class: "error" }, error));
+    return element("td", { class: of.isNumber ? "" : "word" }, inside, element("span", { class: "error" }, error), element("span", { class: "before" }, was(of, entry.runs)));
   });
   const film = runs.some((row) => shapeAt(row)) ? [element("span", { title: "has shapes in motion" }, " ◆")] : [];
   return element("tr", { class: className }, element("td", {}, box, ...film, ...fold), ...cells);
@@ -202,6 +216,9 @@ function refresh() {
 
 function startTable() {
   byId("runs-label").hidden = !pointOf;
+  byId("before-label").hidden = !before.length;
+  byId("before").checked = state.before;
+  byId("before").addEventListener("change", (event) => { state.before = event.target.checked; refresh(); });
   byId("runs").checked = state.runs;
   byId("runs").addEventListener("change", (event) => { state.runs = event.target.checked; refresh(); });
   byId("copy").addEventListener("click", async () => {

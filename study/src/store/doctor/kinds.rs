@@ -15,6 +15,7 @@ pub(super) fn misplaced(results: &Results<'_>) -> Vec<(PathBuf, &'static str)> {
     ];
     let mut files = vec![
         results.study_path(),
+        results.previous_path(),
         results.table_path(),
         results.attempts_path(),
         results.lock_path(),

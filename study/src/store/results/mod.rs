@@ -89,6 +89,11 @@ impl<'a> Results<'a> {
         self.root.join("study.json")
     }
 
+    /// study.json of the run before, where that was of another form of the study.
+    pub fn previous_path(&self) -> PathBuf {
+        self.root.join("previous.json")
+    }
+
     /// Path of the journals.
     pub fn journal_path(&self) -> PathBuf {
         self.root.join("journal")

@@ -127,8 +127,8 @@ impl Results<'_> {
         }
     }
 
-    /// Writes study.json and returns its text. An equal file is not written again. A damaged file is kept in
-    /// the folder `damaged`. `study` is the file of the study, an object; `journal` is that of the folder.
+    /// Writes study.json and returns its text. An equal file is not written again. The file of another form of the study
+    /// becomes previous.json. A damaged file is kept in the folder `damaged`. `study` is the file of the study, an object; `journal` is that of the folder.
     ///
     /// # Errors
     /// [`Error::Disk`] when the folder belongs to another study, or to a program with another version of the file.
@@ -151,6 +151,12 @@ impl Results<'_> {
             )));
         }
         let text = study_text(name, study).map_err(|error| disk_error(&path, &error))?;
+        if path.exists() && !self.holds(name, study)? {
+            let previous = self.previous_path();
+            let before = self.files().read(&path).map_err(|error| disk_error(&path, &error))?;
+            files::write_if_changed(self.files(), &previous, &before)
+                .map_err(|error| disk_error(&previous, &error))?;
+        }
         self.write_study_text(&text)?;
         Ok(text)
     }
