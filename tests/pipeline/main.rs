@@ -29,6 +29,7 @@ mod replicate_tables;
 mod report;
 mod results_folder;
 mod run_and_table;
+mod samples;
 mod scene_files;
 mod search;
 mod several_runs;

@@ -2,7 +2,7 @@
 //! Nothing here knows the physics.
 
 pub mod fault_injection;
-pub(crate) mod random;
+pub mod random;
 pub mod seal;
 pub mod simd;
 pub mod stopwatch;

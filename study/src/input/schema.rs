@@ -149,6 +149,7 @@ fn form(path: &str) -> Json {
             grid["properties"]["filter"] = json!({"type": "string"});
             grid
         }
+        "samples" => samples(),
         "replicates" => {
             let mut replicates = axes();
             let count = json!({"type": "integer", "minimum": 1});
@@ -180,6 +181,30 @@ fn form(path: &str) -> Json {
         "outputs" | "mesh" | "start" | "supports[].move" => json!({"type": "object"}),
         _ => json!({}),
     }
+}
+
+/// Distributions of keys.
+fn samples() -> Json {
+    let number = json!({"type": ["number", "string"]});
+    let numbers = json!({"type": "array", "items": number, "minItems": 2, "maxItems": 3});
+    let kinds = ["uniform", "log_uniform", "normal", "log_normal", "triangular"];
+    let mut distribution = json!({"type": "object", "properties": {
+        "from": number, "to": number, "values": {"type": "array", "minItems": 2},
+        "weights": {"type": "array", "items": {"type": "number", "exclusiveMinimum": 0}},
+    }, "additionalProperties": false});
+    for kind in kinds {
+        distribution["properties"][kind] = numbers.clone();
+    }
+    json!({
+        "type": "object", "required": ["number", "of"], "additionalProperties": false,
+        "properties": {
+            "number": {"type": "integer", "minimum": 2},
+            "method": {"enum": ["sobol", "latin_hypercube"]},
+            "seed": {"type": "integer", "minimum": 0},
+            "of": {"type": "object", "minProperties": 1, "additionalProperties": distribution},
+            "correlations": {"type": "array", "items": {"type": "array", "minItems": 3, "maxItems": 3}},
+        },
+    })
 }
 
 /// Axes by the names of their keys.

@@ -30,6 +30,7 @@ mod range;
 mod replicates;
 mod resolve;
 mod result_limits;
+mod samples;
 mod search;
 mod units;
 
@@ -73,6 +74,8 @@ const CHECKSUM: &str = "checksum";
 
 /// The section of the limits of results. It changes no job.
 pub(crate) const LIMITS: &str = "limits";
+/// The section of the samples.
+pub(crate) const SAMPLES: &str = "samples";
 /// The section of the replicates.
 pub(crate) const REPLICATES: &str = "replicates";
 
@@ -219,6 +222,11 @@ impl Study {
         &self.assumed
     }
 
+    /// Names of the parameters that are sampled; they repeat a point too.
+    pub fn sampled(&self) -> Vec<String> {
+        self.grid.sampled()
+    }
+
     /// Names of the parameters whose values repeat a point.
     pub fn replicates(&self) -> Vec<String> {
         self.grid.repeated()
@@ -261,7 +269,8 @@ impl Study {
 
     /// The most pilots that it can have, one for each run of a point.
     pub fn most_pilots(&self) -> usize {
-        self.point_count().min(2 * pilots::NEAREST) * self.replicate_count()
+        let samples = self.grid.sample_count();
+        (self.point_count() * samples).min(2 * pilots::NEAREST) * (self.replicate_count() / samples)
     }
 
     /// Number of runs of each point: 1 without replicates.

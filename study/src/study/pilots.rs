@@ -103,7 +103,9 @@ pub(super) fn points(
     let by_id: BTreeMap<&JobId, &FinishedRow> = finished.iter().map(|row| (&row.id, row)).collect();
     let key = |point: &Point| -> Vec<String> {
         let fixed = point.job.parameters.iter().enumerate();
-        let fixed = fixed.filter(|(column, _)| !grid.is_replicate(*column));
+        // A sample is a point: the errors of the few nearest to a limit stand for all.
+        let fixed =
+            fixed.filter(|(column, _)| !grid.is_replicate(*column) || grid.is_sampled(*column));
         fixed.map(|(_, (_, value))| value.to_string()).collect()
     };
     // A word has no distance: it counts where all limits are words.

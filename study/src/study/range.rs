@@ -87,7 +87,7 @@ pub(super) fn values(
 }
 
 /// A positive width, SI. It has the dimension of the key, but need not be an allowed value itself.
-fn width(key: &Key, json: &Json) -> Option<f64> {
+pub(super) fn width(key: &Key, json: &Json) -> Option<f64> {
     let number = match (json, key.kind) {
         (Json::Integer(number), _) => Some(*number as f64),
         (Json::Number(number), _) => Some(*number),

@@ -2,7 +2,7 @@
 //! file writes for a key, first under `grid`, then in its section; for a measure those of its limit.
 
 use super::column;
-use super::{JOB_LIMITS, LIMITS, REPLICATES, UNITS};
+use super::{JOB_LIMITS, LIMITS, REPLICATES, SAMPLES, UNITS};
 use crate::input::json::Json;
 use crate::input::keys::{self, KEYS, KeyKind, STUDY};
 use crate::input::object::object;
@@ -16,7 +16,7 @@ use crate::platform::nearest::or_nearest;
 /// Members of a range and of a search that hold values of the key.
 const VALUE_MEMBERS: [&str; 4] = ["from", "to", "step", "bisect"];
 /// Sections in which no key of the study has its value.
-const WITHOUT_VALUES: [&str; 5] = ["grid", UNITS, JOB_LIMITS, LIMITS, REPLICATES];
+const WITHOUT_VALUES: [&str; 6] = ["grid", UNITS, JOB_LIMITS, LIMITS, REPLICATES, SAMPLES];
 /// What the section `units` must look like, for errors.
 const ALLOWED: &str =
     "a unit of this quantity, as in {\"mass_flow_rate\": \"g/s\", \"t_90_z_rim\": \"ms\"}";
@@ -41,7 +41,17 @@ pub(super) fn read(
             units.set(&name, symbol);
         }
     }
-    for (name, value) in ["grid", REPLICATES].into_iter().flat_map(|name| varied(tree.get(name))) {
+    let axes = [tree.get("grid"), tree.get(REPLICATES)];
+    let mut varied: Vec<(&str, &Json)> = axes.into_iter().flat_map(varied).collect();
+    // A distribution is an object with a list of values.
+    if let Some(Json::Object(samples)) = tree.get(SAMPLES).and_then(|samples| samples.get("of")) {
+        for (name, distribution) in samples {
+            if let Json::Object(parts) = distribution {
+                varied.extend(parts.first().map(|(_, values)| (name.as_str(), values)));
+            }
+        }
+    }
+    for (name, value) in varied {
         if let Some(index) = settings.find(name) {
             suggest(&mut units, &settings.name(index), value);
         }

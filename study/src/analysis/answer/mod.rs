@@ -25,11 +25,13 @@ mod inflow;
 mod points;
 mod safety;
 mod searches;
+mod tolerances;
 mod trust;
 
 pub use points::{MixedPoint, PointCounts, VerdictSensitivity};
 pub use safety::{Nearest, SafeCounts, Safety};
 pub use searches::{Found, Searches};
+pub use tolerances::{Part, Quantile, Tolerance};
 pub use trust::Trust;
 
 /// Most values of a parameter that the answer compares. Chosen: more are a chart, or `billow compare --rank`.
@@ -77,6 +79,8 @@ pub struct Answer {
     pub sensitivity: Option<VerdictSensitivity>,
     /// Safe points, in a study with limits.
     pub safety: Option<Safety>,
+    /// What samples say of each point.
+    pub tolerances: Vec<Tolerance>,
     /// What the searches of borders found.
     pub searches: Option<Searches>,
 }
@@ -130,6 +134,7 @@ impl Answer {
         });
         answer.worst = worst.collect();
         answer.safety = Safety::of(table, limits, &rows, &replicates);
+        answer.tolerances = Tolerance::all(table, limits, &replicates, &study.sampled());
         answer.comparisons = comparisons(table, &rows, study);
         let scenes = stored.points.iter().map(|point| (point.job.id.as_str(), &*point.job.scene));
         let scenes = scenes.collect();

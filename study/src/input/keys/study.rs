@@ -66,6 +66,13 @@ pub(crate) const STRUCTURED: &[(&str, &str)] = &[
     ),
     ("grid", "What varies: every combination of the axes, the first varying slowest."),
     (
+        "samples",
+        "Inputs that are not known exactly, as in {\"number\": 64, \"of\": {\"film.youngs_modulus\": {\"normal\": [\"3.45 GPa\", \
+         \"5 %\"]}}}: every point runs with each sample, and the answer says how probable it is that it is safe, how its \
+         measures spread, and which input makes the spread. method: sobol (default; more samples extend it) or \
+         latin_hypercube; seed; correlations.",
+    ),
+    (
         "replicates",
         "Parameters whose values repeat each point, as in {\"seed\": 5} (seeds 1 to 5) or {\"seed\": [1, 2, 7]}. Each \
          run is a row; tables, comparisons and charts show median, range and proportions.",

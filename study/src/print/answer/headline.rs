@@ -1,14 +1,22 @@
 //! The answer in one line: which choice is safest, or how many points are safe.
 
 use super::comparisons::{listed, value};
-use crate::analysis::answer::{Answer, SafeCounts};
+use super::parameters_text;
+use super::tolerances::probability;
+use crate::analysis::answer::{Answer, SafeCounts, Tolerance};
 use crate::analysis::ranking::{Basis, Ranking};
 use crate::job::row::CellType;
 use crate::print::count;
 
+/// Points of samples in the line, at most.
+const MAX_POINTS: usize = 4;
+
 /// The line; `None` for a study without limits, and for one that searches a border: its borders say it.
 pub(super) fn headline(answer: &Answer) -> Option<String> {
     let safety = answer.safety.as_ref().filter(|_| answer.searches.is_none())?;
+    if !answer.tolerances.is_empty() {
+        return Some(of_samples(&answer.tolerances));
+    }
     Some(choice(answer).unwrap_or_else(|| of_points(&safety.counts)))
 }
 
@@ -47,6 +55,17 @@ fn of_choice(choice: &Ranking, counts: &SafeCounts) -> String {
     } else {
         texts
     }
+}
+
+/// "strategy=delayed: safe with a probability of 92 to 100 % (…); strategy=rapid: …", the safest first.
+fn of_samples(points: &[Tolerance]) -> String {
+    let mut order: Vec<&Tolerance> = points.iter().collect();
+    order.sort_by_key(|point| std::cmp::Reverse((point.safe.met, point.safe.of - point.not_safe)));
+    let text = |point: &&Tolerance| match parameters_text(&point.parameters) {
+        name if name.is_empty() => probability(point),
+        name => format!("{name}: {}", probability(point)),
+    };
+    order.iter().take(MAX_POINTS).map(text).collect::<Vec<_>>().join("; ")
 }
 
 fn of_points(counts: &SafeCounts) -> String {

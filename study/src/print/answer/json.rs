@@ -42,6 +42,7 @@ pub fn json(answer: &Answer) -> Value {
         "mixed": answer.mixed,
         "verdict_depends_on": answer.sensitivity,
         "safe": answer.safety,
+        "tolerances": answer.tolerances,
         "borders": answer.searches.as_ref().map(borders_json),
     })
 }

@@ -22,6 +22,7 @@ mod comparisons;
 mod headline;
 mod json;
 mod safe;
+mod tolerances;
 
 pub use headline::choice;
 pub use json::json;
@@ -59,6 +60,7 @@ pub fn topics(answer: &Answer) -> Vec<Topic> {
             brief_number(100.0 * answer.largest_strain)
         )
     });
+    let samples = !answer.tolerances.is_empty();
     let mut topics = vec![
         wrapped("answer", headline::headline(answer).into_iter().collect()),
         wrapped("assumed", vec![answer.assumptions.join("; ")]),
@@ -66,7 +68,9 @@ pub fn topics(answer: &Answer) -> Vec<Topic> {
         wrapped("moving", moving(answer.still_moving).into_iter().collect()),
         wrapped("depends", answer.sensitivity.iter().map(safe::sensitivity).collect()),
         wrapped("safe", answer.safety.iter().map(safe::safe).collect()),
-        wrapped("mixed", safe::mixed(&answer.mixed)),
+        // Samples say it better.
+        wrapped("mixed", if samples { Vec::new() } else { safe::mixed(&answer.mixed) }),
+        wrapped("samples", tolerances::lines(&answer.tolerances)),
         // The border is what a study with a search asks for, so it stands before the single jobs.
         wrapped("border", answer.searches.iter().flat_map(border::lines).collect()),
     ];

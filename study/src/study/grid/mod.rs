@@ -2,10 +2,10 @@
 
 mod read;
 
-use super::REPLICATES;
 use super::column::Column;
 use super::filter::Filter;
 use super::search::Search;
+use super::{REPLICATES, SAMPLES};
 use crate::input::settings::Settings;
 use crate::input::source::Source;
 use crate::input::value::Value;
@@ -56,6 +56,8 @@ pub(super) enum AxisKind {
     Search,
     /// Repetitions of each point.
     Replicates,
+    /// Samples of inputs at each point.
+    Samples,
     /// Meshes from which values are extrapolated.
     Meshes,
 }
@@ -63,7 +65,7 @@ pub(super) enum AxisKind {
 impl AxisKind {
     /// Whether its values repeat a point: they make no point of their own.
     pub fn repeats(self) -> bool {
-        matches!(self, Self::Replicates | Self::Meshes)
+        matches!(self, Self::Replicates | Self::Samples | Self::Meshes)
     }
 }
 
@@ -80,6 +82,7 @@ impl Grid {
             let Some(column) = axis.columns.iter().find(is_set) else { continue };
             let (by, allowed) = match axis.kind {
                 AxisKind::Meshes => ("solver.meshes", "solver.meshes=[4, 8]".to_owned()),
+                AxisKind::Samples => (SAMPLES, format!("{SAMPLES}.of={{\"{}\": …}}", name(column))),
                 AxisKind::Replicates => (REPLICATES, format!("replicates.{}=[…]", name(column))),
                 AxisKind::Values | AxisKind::Search => {
                     ("grid.zip", format!("grid.zip=[{{\"{}\": […], …}}]", name(column)))
@@ -99,6 +102,26 @@ impl Grid {
             |point: &&Vec<(usize, Value)>| point.iter().any(|(column, _)| *column == search.column);
         let given = self.points.iter().filter(gives).count();
         given + (self.points.len() - given) * search.scan().len()
+    }
+
+    fn samples(&self) -> Option<&Axis> {
+        self.axes.iter().find(|axis| axis.kind == AxisKind::Samples)
+    }
+
+    /// Names of the inputs that are sampled.
+    pub fn sampled(&self) -> Vec<String> {
+        let columns = self.samples().into_iter().flat_map(|axis| &axis.columns);
+        columns.map(|column| self.columns[*column].name.clone()).collect()
+    }
+
+    /// Whether a column is that of an input that is sampled.
+    pub fn is_sampled(&self, column: usize) -> bool {
+        self.samples().is_some_and(|axis| axis.columns.contains(&column))
+    }
+
+    /// Number of samples of each point: 1 without.
+    pub fn sample_count(&self) -> usize {
+        self.samples().map_or(1, |axis| axis.rows.len())
     }
 
     /// Names of the columns whose values repeat a point.

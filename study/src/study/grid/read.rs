@@ -13,7 +13,7 @@ use crate::platform::error::InputError;
 use crate::study::column::{self, Column};
 use crate::study::filter::Filter;
 use crate::study::search::{Search, is_search};
-use crate::study::{REPLICATES, range};
+use crate::study::{REPLICATES, SAMPLES, range};
 
 /// What an axis must look like, for errors.
 const AXIS: &str = "a list of values; {\"from\", \"to\", and \"steps\" or \"step\", \"spacing\"}; or \
@@ -54,6 +54,7 @@ impl Grid {
                 }
             }
         }
+        grid.read_samples(tree.get(SAMPLES), context)?;
         grid.read_replicates(tree.get(REPLICATES), context)?;
         grid.read_meshes(tree.get("solver").and_then(|solver| solver.get("meshes")), context)?;
         grid.check_search(context.source)?;

@@ -1,0 +1,449 @@
+//! What samples of inputs say of each point: how probable it is that it is safe, how its measures spread, and what makes
+//! the spread.
+//!
+//! ```text
+//! P(safe)       from the Wilson interval of the runs that are safe, its lower end, to that of those that are not unsafe, its
+//!               upper end: a run within its uncertainty is either
+//! quantile p    x_(⌈np⌉) of the sorted values; interval x_(l) to x_(u) with P(l ≤ Bin(n, p) < u) ≥ 95 %
+//! y' = Σ βⱼ xⱼ'           ranks of the measure and of the inputs, standardised; least squares
+//! part of input j         βⱼ r(xⱼ', y'): the parts sum to R² (J. W. Pratt, 1987), also where inputs are correlated
+//! spread²       = s² of the samples + s² of the other replicates + (mesh error/1.96)² + (assumed/1.96)²
+//! ```
+//!
+//! Intervals of parts are those of 200 resamples of the samples. Ranks see any monotonic effect; what no sum of them
+//! explains is said as such.
+
+use std::collections::BTreeMap;
+
+use billow_solver::platform::random::{hash, unit};
+use nalgebra::{Cholesky, DMatrix, DVector};
+use serde::Serialize;
+
+use super::{bounds, parameters, parameters_of};
+use crate::analysis::replicates::{Condensed, source};
+use crate::analysis::values::{canonical, measured};
+use crate::input::units::DisplayUnit;
+use crate::input::value::Value;
+use crate::job::proportion::Proportion;
+use crate::job::result_limit::ResultLimit;
+use crate::job::row::{ColumnId, HEADLINE};
+use crate::store::table::{Column, Table};
+
+/// Quantiles in the answer.
+const QUANTILES: [f64; 3] = [0.05, 0.5, 0.95];
+/// Probability that an interval misses on each side.
+const MISSED: f64 = 0.025;
+/// Resamples for the intervals of parts. Chosen: their ends change by a few per cent with another number.
+const RESAMPLES: u64 = 200;
+/// Samples for each input below which the answer has no parts. Chosen: with fewer a fit explains noise.
+const SAMPLES_PER_INPUT: usize = 3;
+/// Half width of an interval of 95 % over the standard deviation.
+const Z: f64 = 1.959_963_984_540_054;
+/// Other causes than inputs, in a budget.
+const MESH: &str = "mesh error";
+const ASSUMED: &str = "assumed values";
+const REPLICATES: &str = "replicates";
+const UNEXPLAINED: &str = "not explained by ranks";
+
+/// What samples say of a point.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Tolerance {
+    /// Its parameters, and the units in which they are shown.
+    #[serde(serialize_with = "parameters")]
+    pub parameters: Vec<(String, Value, DisplayUnit)>,
+    /// Number of runs with values.
+    pub runs: usize,
+    /// Of the runs that the limits can judge, those that are safe; none without limits.
+    pub safe: Proportion,
+    /// The probability that a run is safe: an interval, 95 %.
+    pub safe_between: [f64; 2],
+    /// Number of runs that are unsafe; the others are within their uncertainty.
+    pub not_safe: usize,
+    /// The run with the smallest margin: its job, the margin, the measure.
+    pub nearest: Option<(String, f64, String)>,
+    /// The measures that have a limit, or the main ones.
+    pub measures: Vec<Spread>,
+}
+
+/// How a measure spreads over the samples of a point.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Spread {
+    /// The measure.
+    pub measure: String,
+    /// Unit in which it is shown.
+    #[serde(skip)]
+    pub shown: DisplayUnit,
+    /// Its quantiles, SI.
+    pub quantiles: Vec<Quantile>,
+    /// Standard deviation of all that is known together, SI.
+    pub deviation: f64,
+    /// What makes the spread, the largest first: name, part of the squared deviation.
+    pub parts: Vec<Part>,
+    /// What is not in the parts, and why.
+    pub without: Vec<String>,
+}
+
+/// A quantile of a measure.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Quantile {
+    /// The part of the values below it.
+    pub p: f64,
+    /// The value, SI.
+    pub value: f64,
+    /// Its interval, 95 %, SI; `None` at an end where too few samples give none.
+    pub between: [Option<f64>; 2],
+}
+
+/// A part of a spread.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Part {
+    /// An input, or what else it is.
+    pub name: String,
+    /// Its part of the squared deviation.
+    pub part: f64,
+    /// The interval of the part of an input, 95 %.
+    pub between: Option<[f64; 2]>,
+}
+
+impl Tolerance {
+    /// What samples say of every point; none without samples.
+    pub fn all(
+        table: &Table,
+        limits: &[ResultLimit],
+        replicates: &[String],
+        sampled: &[String],
+    ) -> Vec<Self> {
+        if sampled.is_empty() {
+            return Vec::new();
+        }
+        let rows: Vec<usize> = (0..table.rows()).collect();
+        let points = Condensed::of(table, &table.one_row_per_job(&rows), replicates);
+        let measures = measures(table, limits);
+        let feasible: Vec<usize> = points.feasible().collect();
+        let of = |point: &usize| {
+            let runs = &points.runs[*point];
+            let spread = |measure: &ColumnId| {
+                Spread::of(table, table.column(measure.name())?, &runs.measured, sampled)
+            };
+            let nearest = runs.worst_margin(table).and_then(|(margin, measure, row)| {
+                Some((table.column("job")?.cells[row].to_string(), margin, measure))
+            });
+            let possible = Proportion { met: runs.safe.of - runs.not_safe, ..runs.safe };
+            Self {
+                parameters: parameters_of(&points.table, *point),
+                runs: runs.measured.len(),
+                safe: runs.safe,
+                safe_between: [runs.safe.wilson()[0], possible.wilson()[1]],
+                not_safe: runs.not_safe,
+                nearest,
+                measures: measures.iter().filter_map(spread).collect(),
+            }
+        };
+        feasible.iter().map(of).collect()
+    }
+}
+
+/// The measures that have a limit; without one, how soon and how hard.
+fn measures(table: &Table, limits: &[ResultLimit]) -> Vec<ColumnId> {
+    let mut limited: Vec<ColumnId> = Vec::new();
+    for (measure, _) in bounds(limits) {
+        if !limited.contains(&measure) {
+            limited.push(measure);
+        }
+    }
+    if limited.is_empty() {
+        limited = vec![table.of_any_film(HEADLINE[0]), table.of_any_film(ColumnId::PeakVz)];
+    }
+    limited
+}
+
+impl Spread {
+    /// The spread of a measure over these rows; `None` without two values.
+    fn of(table: &Table, column: &Column, rows: &[usize], sampled: &[String]) -> Option<Self> {
+        let values_of = source(table, column);
+        let inputs: Vec<&Column> =
+            table.parameters().filter(|c| sampled.contains(&c.name)).collect();
+        // The runs of each sample, in the order of the samples.
+        let mut samples: BTreeMap<Vec<String>, Vec<usize>> = BTreeMap::new();
+        let mut values = Vec::new();
+        for row in rows.iter().filter(|row| measured(table, values_of, **row).is_some()) {
+            let key = inputs.iter().map(|input| canonical(&input.cells[*row])).collect();
+            samples.entry(key).or_default().push(*row);
+        }
+        let mut means = Vec::new();
+        let mut within = 0.0;
+        for rows in samples.values() {
+            let of_sample: Vec<f64> =
+                rows.iter().filter_map(|row| measured(table, values_of, *row)).collect();
+            let (mean, variance) = moments(&of_sample);
+            means.push(mean);
+            within += variance / samples.len() as f64;
+            values.extend(of_sample);
+        }
+        if values.len() < 2 {
+            return None;
+        }
+        values.sort_by(f64::total_cmp);
+        let quantiles = QUANTILES.map(|p| Quantile::of(&values, p, samples.len()));
+        let first: Vec<usize> = samples.values().map(|rows| rows[0]).collect();
+        let mut budget = Budget::default();
+        let between = moments(&means).1;
+        budget.inputs(&inputs, &first, &means, between);
+        budget.add(REPLICATES, within);
+        let id = ColumnId::from_name(&column.name);
+        let all: Vec<usize> = samples.values().flatten().copied().collect();
+        let half = |which: usize| -> Option<f64> {
+            let sides = all.iter().map(|row| table.error_parts(id?, *row)[which]);
+            let halves: Option<Vec<f64>> =
+                sides.map(|sides| sides.map(|[a, b]| 0.5 * (a + b) / Z)).collect();
+            halves.map(|halves| moments(&halves).0)
+        };
+        for (which, name) in [MESH, ASSUMED].iter().enumerate() {
+            match half(which) {
+                Some(deviation) => budget.add(name, deviation * deviation),
+                None => budget.without.push(format!("{name}: not known")),
+            }
+        }
+        let all: f64 = budget.parts.iter().map(|part| part.part).sum();
+        for part in &mut budget.parts {
+            part.part /= all;
+            part.between = part.between.map(|ends| ends.map(|end| end / all));
+        }
+        budget.parts.retain(|part| part.part > 0.0);
+        budget.parts.sort_by(|a, b| b.part.total_cmp(&a.part));
+        Some(Self {
+            measure: column.name.clone(),
+            shown: column.shown.clone(),
+            quantiles: quantiles.to_vec(),
+            deviation: libm::sqrt(all),
+            parts: budget.parts,
+            without: budget.without,
+        })
+    }
+}
+
+impl Quantile {
+    /// Of sorted values; `samples` of them are independent.
+    fn of(sorted: &[f64], p: f64, samples: usize) -> Self {
+        let at = |rank: f64| {
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "at least 0"
+            )]
+            let index = (rank.max(0.0) as usize).min(sorted.len() - 1);
+            sorted[index]
+        };
+        let (n, all) = (samples as f64, sorted.len() as f64);
+        let [low, high] = ranks(samples, p);
+        // Ranks of the samples among all values.
+        let place = |rank: usize| at((rank as f64 - 0.5) / n * all);
+        Self {
+            p,
+            value: at(libm::ceil(all * p) - 1.0),
+            between: [low.map(place), high.filter(|rank| *rank <= samples).map(place)],
+        }
+    }
+}
+
+/// Ranks l and u, from 1, between whose values a quantile of `n` values is in 19 of 20 cases: P(Bin(n, p) < l) and
+/// P(Bin(n, p) ≥ u) are at most 2.5 %.
+fn ranks(n: usize, p: f64) -> [Option<usize>; 2] {
+    let mut term = libm::exp(n as f64 * libm::log1p(-p));
+    let mut below = 0.0;
+    let (mut low, mut high) = (None, None);
+    for k in 0..=n {
+        // `below` is P(Bin < k).
+        if below <= MISSED && k > 0 {
+            low = Some(k);
+        }
+        if high.is_none() && 1.0 - below <= MISSED {
+            high = Some(k);
+        }
+        below += term;
+        term *= (n - k) as f64 / (k + 1) as f64 * p / (1.0 - p);
+    }
+    [low, high]
+}
+
+/// What makes a spread.
+#[derive(Default)]
+struct Budget {
+    parts: Vec<Part>,
+    without: Vec<String>,
+}
+
+impl Budget {
+    fn add(&mut self, name: &str, variance: f64) {
+        self.parts.push(Part { name: name.to_owned(), part: variance, between: None });
+    }
+
+    /// Adds the inputs: `values` of a measure, one at each row.
+    fn inputs(&mut self, inputs: &[&Column], rows: &[usize], values: &[f64], variance: f64) {
+        let needed = SAMPLES_PER_INPUT * inputs.len().max(2);
+        if rows.len() < needed {
+            self.add("inputs together", variance);
+            self.without
+                .push(format!("what each input makes: {} samples, {needed} needed", rows.len()));
+            return;
+        }
+        let columns: Vec<Vec<f64>> = inputs.iter().map(|input| numbers(input, rows)).collect();
+        let all: Vec<usize> = (0..rows.len()).collect();
+        let Some(parts) = pratt(&columns, values, &all) else {
+            self.add("inputs together", variance);
+            self.without
+                .push("what each input makes: their ranks do not tell them apart".to_owned());
+            return;
+        };
+        let resampled = |k: u64| {
+            let draw = |i: usize| {
+                let at = unit(hash(k + 1, i as u64 + 1)) * rows.len() as f64;
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "below the length"
+                )]
+                let at = at as usize;
+                at
+            };
+            pratt(&columns, values, &(0..rows.len()).map(draw).collect::<Vec<_>>())
+        };
+        let resampled: Vec<Vec<f64>> = (0..RESAMPLES).filter_map(resampled).collect();
+        let mut explained = 0.0;
+        for (index, input) in inputs.iter().enumerate() {
+            let mut all: Vec<f64> = resampled.iter().map(|parts| parts[index].max(0.0)).collect();
+            all.sort_by(f64::total_cmp);
+            let end = |p: f64| {
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "between 0 and 1"
+                )]
+                let at = (p * (all.len() - 1) as f64) as usize;
+                variance * all[at]
+            };
+            let between = (all.len() > 1).then(|| [end(MISSED), end(1.0 - MISSED)]);
+            let part = parts[index].max(0.0);
+            explained += part;
+            self.parts.push(Part { name: input.name.clone(), part: variance * part, between });
+        }
+        self.add(UNEXPLAINED, variance * (1.0 - explained).max(0.0));
+    }
+}
+
+/// The values of an input as numbers; words by their order.
+fn numbers(input: &Column, rows: &[usize]) -> Vec<f64> {
+    let mut words: Vec<String> = rows.iter().map(|row| canonical(&input.cells[*row])).collect();
+    words.sort();
+    words.dedup();
+    let number = |row: &usize| match &input.cells[*row] {
+        Value::Number(number) => *number,
+        Value::Integer(number) => *number as f64,
+        other => words.binary_search(&canonical(other)).unwrap_or(0) as f64,
+    };
+    rows.iter().map(number).collect()
+}
+
+/// Mean, and variance of a sample (0 for one value).
+fn moments(values: &[f64]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
+    (mean, if values.len() > 1 { squares / (n - 1.0) } else { 0.0 })
+}
+
+/// Standardised ranks of the values at these places, equal values with their mean rank; `None` where all are equal.
+fn standardised_ranks(values: &[f64], places: &[usize]) -> Option<Vec<f64>> {
+    let mut order: Vec<usize> = (0..places.len()).collect();
+    order.sort_by(|a, b| values[places[*a]].total_cmp(&values[places[*b]]));
+    let mut ranks = vec![0.0; places.len()];
+    let mut from = 0;
+    for chunk in order.chunk_by(|a, b| values[places[*a]].total_cmp(&values[places[*b]]).is_eq()) {
+        let mean = from as f64 + 0.5 * (chunk.len() - 1) as f64;
+        for place in chunk {
+            ranks[*place] = mean;
+        }
+        from += chunk.len();
+    }
+    let (mean, variance) = moments(&ranks);
+    let deviation = libm::sqrt(variance);
+    (deviation > 0.0).then(|| ranks.iter().map(|rank| (rank - mean) / deviation).collect())
+}
+
+/// The part of each input in the spread of the ranks of some values, at these places.
+fn pratt(inputs: &[Vec<f64>], values: &[f64], places: &[usize]) -> Option<Vec<f64>> {
+    let n = places.len();
+    let y = DVector::from_vec(standardised_ranks(values, places)?);
+    let ranks: Option<Vec<Vec<f64>>> =
+        inputs.iter().map(|input| standardised_ranks(input, places)).collect();
+    let x = DMatrix::from_vec(n, inputs.len(), ranks?.concat());
+    let correlation = x.transpose() * &y / (n as f64 - 1.0);
+    let matrix = x.transpose() * &x / (n as f64 - 1.0);
+    let beta = Cholesky::new(matrix)?.solve(&correlation);
+    Some(beta.iter().zip(correlation.iter()).map(|(b, r)| b * r).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::fixture;
+
+    /// Samples of y = 3 a + b + noise, with a limit.
+    fn table(samples: u64) -> Table {
+        let number = |seed: u64, index: u64| unit(hash(seed, index));
+        let row = |i: u64| {
+            let (a, b) = (number(1, i), number(2, i));
+            let y = 10.0 + 3.0 * a + b + 0.1 * number(3, i);
+            let safe = if y < 13.0 { "safe" } else { "unsafe" };
+            format!("j{i} {a} {b} done {y} {safe}")
+        };
+        fixture::table_of("job a b status peak_vz safety", (1..=samples).map(row))
+    }
+
+    fn names(names: &[&str]) -> Vec<String> {
+        names.iter().map(|name| (*name).to_owned()).collect()
+    }
+
+    #[test]
+    fn parts_are_those_of_the_variance_of_a_sum() {
+        let (table, inputs) = (table(400), names(&["a", "b"]));
+        let found = Tolerance::all(&table, &[], &inputs, &inputs);
+        let [point] = found.as_slice() else { panic!("{found:?}") };
+        let spread = point.measures.iter().find(|one| one.measure == "peak_vz").unwrap();
+        // Var = 9/12 + 1/12 + 0.01/12.
+        let part = |name: &str| spread.parts.iter().find(|part| part.name == name).unwrap();
+        for (name, exact) in [("a", 0.899), ("b", 0.0999)] {
+            let Part { part, between, .. } = part(name).clone();
+            let [low, high] = between.unwrap();
+            assert!((part - exact).abs() < 0.04, "{name}: {part}");
+            assert!(low < part && part < high && high - low < 0.2, "{name}: {low} {high}");
+        }
+        let sum: f64 = spread.parts.iter().map(|part| part.part).sum();
+        assert!((sum - 1.0).abs() < 1e-12);
+        assert!((spread.deviation - libm::sqrt(10.01 / 12.0)).abs() < 0.05);
+        assert_eq!(point.safe.of, 400);
+        let exact = point.safe.met as f64 / 400.0;
+        assert!(point.safe_between[0] < exact && exact < point.safe_between[1]);
+    }
+
+    #[test]
+    fn ranks_of_quantiles_are_those_of_the_binomial_distribution() {
+        // Conover, "Practical nonparametric statistics": the median of 20 is between x₆ and x₁₅.
+        assert_eq!(ranks(20, 0.5), [Some(6), Some(15)]);
+        // 0.95¹⁰ > 2.5 %: ten samples say nothing of what is below the quantile of 5 %.
+        assert_eq!(ranks(10, 0.05)[0], None);
+        let sorted: Vec<f64> = (1..=100).map(f64::from).collect();
+        let median = Quantile::of(&sorted, 0.5, 100);
+        assert!((median.value - 50.0).abs() < 1e-12);
+        assert_eq!(median.between, [Some(40.0), Some(61.0)]);
+    }
+
+    #[test]
+    fn few_samples_tell_no_parts() {
+        let (table, inputs) = (table(5), names(&["a", "b"]));
+        let found = Tolerance::all(&table, &[], &inputs, &inputs);
+        let spread = &found[0].measures.last().unwrap();
+        assert_eq!(spread.parts[0].name, "inputs together");
+        assert!(spread.without[0].contains("5 samples, 6 needed"), "{:?}", spread.without);
+    }
+}

@@ -1,0 +1,98 @@
+//! Lines of the answer on samples: how probable it is that a point is safe, quantiles, and what makes the spread.
+
+use std::fmt::Write as _;
+
+use super::parameters_text;
+use crate::analysis::answer::{Part, Quantile, Tolerance};
+use crate::input::units::DisplayUnit;
+use crate::input::value::brief_number;
+use crate::job::proportion::Proportion;
+use crate::print::{MAX_VALUES, count};
+
+/// Parts of a spread in a line, at most.
+const MAX_PARTS: usize = 6;
+
+/// For each point a line, then one for each measure.
+pub(super) fn lines(points: &[Tolerance]) -> Vec<String> {
+    let mut lines: Vec<String> = points.iter().take(MAX_VALUES).flat_map(of_point).collect();
+    if points.len() > MAX_VALUES {
+        lines.push(format!("and {} more", count(points.len() - MAX_VALUES, "point")));
+    }
+    lines
+}
+
+fn of_point(point: &Tolerance) -> Vec<String> {
+    let mut text = parameters_text(&point.parameters);
+    if !text.is_empty() {
+        text.push_str(": ");
+    }
+    if point.safe.of > 0 {
+        text.push_str(&probability(point));
+    } else {
+        let _ = write!(text, "{}", count(point.runs, "sample"));
+    }
+    if let Some((job, margin, measure)) = &point.nearest {
+        let job = &job[..8.min(job.len())];
+        let _ = write!(
+            text,
+            "; smallest margin {} % of {measure}: job {job}",
+            brief_number(100.0 * margin)
+        );
+    }
+    let measures = point.measures.iter().map(|spread| {
+        let quantiles: Vec<String> =
+            spread.quantiles.iter().map(|one| quantile(one, &spread.shown)).collect();
+        let part = |part: &Part| {
+            let percent = |part: f64| format!("{:.0}", 100.0 * part);
+            let between = part.between.map_or_else(String::new, |[low, high]| {
+                format!(" ({} to {})", percent(low), percent(high))
+            });
+            format!("{} {} %{between}", part.name, percent(part.part))
+        };
+        let parts: Vec<String> = spread.parts.iter().take(MAX_PARTS).map(part).collect();
+        let without = match spread.without.as_slice() {
+            [] => String::new(),
+            all => format!("; {}", all.join("; ")),
+        };
+        format!(
+            "  {}: {}; spread {} (standard deviation), of which {}{without}",
+            spread.measure,
+            quantiles.join(", "),
+            spread.shown.of_difference().brief(spread.deviation),
+            parts.join(", ")
+        )
+    });
+    let measures: Vec<String> = measures.collect();
+    [vec![text], measures].concat()
+}
+
+/// "safe with a probability of 75 to 92 % (55 of 64 samples safe, 6 unsafe, 3 within their uncertainty)".
+pub(super) fn probability(point: &Tolerance) -> String {
+    let [low, high] = point.safe_between.map(|end| 100.0 * end);
+    let Proportion { met, of } = point.safe;
+    let within = of - met - point.not_safe;
+    let mut text =
+        format!("safe with a probability of {low:.0} to {high:.0} % ({met} of {of} samples safe");
+    for (number, what) in [(point.not_safe, "unsafe"), (within, "within their uncertainty")] {
+        if number > 0 {
+            let _ = write!(text, ", {number} {what}");
+        }
+    }
+    text.push(')');
+    text
+}
+
+/// "95 % below 24.1 m/s (22.8 to 27)".
+fn quantile(one: &Quantile, unit: &DisplayUnit) -> String {
+    let ends = match one.between {
+        [Some(low), Some(high)] => format!("{} to {}", end(low, unit), end(high, unit)),
+        [None, Some(high)] => format!("at most {}", end(high, unit)),
+        [Some(low), None] => format!("at least {}", end(low, unit)),
+        [None, None] => "too few samples".to_owned(),
+    };
+    format!("{} % below {} ({ends})", brief_number(100.0 * one.p), unit.brief(one.value))
+}
+
+fn end(si: f64, unit: &DisplayUnit) -> String {
+    brief_number(unit.number(si))
+}
