@@ -49,10 +49,10 @@ fn a_job_has_the_same_history_in_every_study() {
 fn a_run_with_another_set_says_what_changed_and_keeps_every_job() {
     let folder = ran();
     let said = folder.run(&["run", "grid.json", "--set", "solver.end_time=0.3"]);
-    let note = "last run for another form of this study (solver.end_time 0.6 s → 0.3)";
+    let note = "last run for another form of this study (solver.end_time 0.6 s → 0.3 s)";
     assert!(stderr(&said).contains(note), "{}", stderr(&said));
     let table = stderr(&folder.run(&["table", "grid.json"]));
-    assert!(table.contains("(solver.end_time 0.3 → 0.6 s)"), "{table}");
+    assert!(table.contains("(solver.end_time 0.3 s → 0.6 s)"), "{table}");
     let same = folder.run(&["table", "grid.json", "--set", "solver.end_time=0.3"]);
     assert!(!stderr(&same).contains("is not the study"), "{}", stderr(&same));
     // Back to the first form: nothing is computed again.

@@ -18,6 +18,17 @@ impl Default for AssumedRanges {
     }
 }
 
+impl AssumedRanges {
+    /// Leaves out what is not assumed: such a key keeps its value.
+    pub fn leave_out(&mut self, is_known: impl Fn(&str) -> bool) {
+        for (index, (key, range)) in ASSUMED_KEYS.iter().zip(&mut self.0).enumerate() {
+            if is_known(key) {
+                *range = [assumed_value(index); 2];
+            }
+        }
+    }
+}
+
 /// Their positions among the keys: a row asks many times.
 const POSITIONS: [usize; ASSUMED_KEYS.len()] =
     [position(KEYS, ASSUMED_KEYS[0]), position(KEYS, ASSUMED_KEYS[1])];

@@ -210,7 +210,7 @@ impl Runs {
 
 /// Of the runs of a point, those on the mesh that stands for it, where values are extrapolated from several: the finest
 /// of those on which most of them have a value, so that a pilot counts only once all its runs do.
-fn finest(table: &Table, rows: &[usize]) -> Vec<usize> {
+pub fn finest(table: &Table, rows: &[usize]) -> Vec<usize> {
     let mesh = table.parameters().find(|column| column.name == MESH_PARAMETER);
     let Some(mesh) = mesh.filter(|_| table.has_extrapolated()) else { return rows.to_vec() };
     let mut with_value: BTreeMap<i64, usize> = BTreeMap::new();

@@ -157,7 +157,7 @@ impl<'a> Source<'a> {
         });
         Some(if meshes.of_pilots {
             format!(
-                "Points with runs on n {} (pilots, nearest to a limit) show these alone.",
+                "A point whose runs all ran on n {} (pilots, nearest to a limit) shows these alone.",
                 meshes_text(&meshes.list)
             )
         } else if extrapolated && !meshes.of_file {

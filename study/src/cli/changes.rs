@@ -3,13 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use crate::input::value::Value;
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
 use crate::platform::provenance::PHYSICS_VERSION;
 use crate::scene::summary;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
-use crate::study::{JOB_LIMITS, Study, UNITS};
+use crate::study::{JOB_LIMITS, Study, StudyKey, UNITS};
 
 /// The study of a given file where it differs from that of the results in its limits, or the ranges of what is assumed,
 /// alone: these judge stored rows and change no job. Says on stderr in which keys it differs.
@@ -53,7 +54,7 @@ pub fn other_limits(of: &Stored<'_>, study: Study, path: &Path) -> Result<Option
     Ok(None)
 }
 
-/// The keys in which two studies differ, with both values: "film.thickness 2.54e-5 → 3e-5".
+/// The keys in which two studies differ, with both values: "film.thickness 25.4 um → 30 um".
 pub fn between(from: &Study, to: &Study) -> Vec<String> {
     const MAX_SHOWN: usize = 4;
     const GRID: &str = "grid";
@@ -73,11 +74,23 @@ pub fn between(from: &Study, to: &Study) -> Vec<String> {
     let (old, new) = (values(from), values(to));
     let keys: BTreeSet<&String> = old.keys().chain(new.keys()).collect();
     let differing = keys.into_iter().filter(|key| old.get(*key) != new.get(*key));
-    let shown = |value: Option<&String>| value.map_or_else(|| "none".to_owned(), String::clone);
+    // Both values in one unit, whatever the files write.
+    let shown = |study: &Study, key: &str, value: Option<&String>| {
+        let known = study.key(key).filter(|known| matches!(known.value, Value::Number(_)));
+        let in_unit = |known: StudyKey| {
+            to.display_units().of(&known.name, known.key.unit()).quantity(&known.value)
+        };
+        value
+            .map_or_else(|| "none".to_owned(), |value| known.map_or_else(|| value.clone(), in_unit))
+    };
     let mut changes: Vec<String> = differing
         .map(|key| match key.as_str() {
             GRID => GRID.to_owned(),
-            _ => format!("{key} {} → {}", shown(old.get(key)), shown(new.get(key))),
+            _ => format!(
+                "{key} {} → {}",
+                shown(from, key, old.get(key)),
+                shown(to, key, new.get(key))
+            ),
         })
         .collect();
     let more = changes.len().saturating_sub(MAX_SHOWN);

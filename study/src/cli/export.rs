@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use billow_solver::models::film;
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::film_scene::FilmContact;
+use billow_solver::scene::inflow::Schedule;
 use billow_solver::scene::{DEFAULT_CFL, ModelKind, Scene};
 use clap::ValueEnum;
 
@@ -98,7 +99,7 @@ fn decks(args: &Args, of: &[String], out: &mut dyn Write) -> Result<()> {
     };
     let path = Path::new(path);
     let Some(job) = &args.of else {
-        let next = "billow table --columns job,status lists the ids";
+        let next = "billow table --runs --columns job,status lists the ids";
         return Err(Error::invalid_option(
             "JOB",
             "",
@@ -112,6 +113,11 @@ fn decks(args: &Args, of: &[String], out: &mut dyn Write) -> Result<()> {
     let id = stored.job(job)?;
     let files = written(&stored, &id, code, path)?;
     if code == Code::Radioss {
+        if path.is_file() {
+            let (value, problem) = (path.display().to_string(), "is a file");
+            let allowed = "a folder for the two files; it may be new";
+            return Err(Error::invalid_option("--deck radioss", &value, problem, allowed, ""));
+        }
         Disk.create_folder(path).map_err(|error| disk_error(path, &error))?;
     }
     let mut rows = Vec::new();
@@ -134,8 +140,15 @@ fn written(
         let (problem, allowed) = problem.split_once("; allowed: ").unwrap_or((problem, "film"));
         Error::invalid_option("JOB", id.short(), problem, allowed, "")
     };
-    let scene: Scene = serde_json::from_value(stored.scene(id)?)
-        .map_err(|error| refused(&format!("its scene is of another version: {error}")))?;
+    // A scene with a mesh is known by its study, and is not read from JSON.
+    let scene: Scene = match stored.point(id) {
+        Some(point) if point.infeasible.is_some() => {
+            return Err(refused("no fold pattern fits it; allowed: a job with a fold pattern"));
+        }
+        Some(point) if point.job.id == *id => (*point.job.scene).clone(),
+        _ => serde_json::from_value(stored.scene(id)?)
+            .map_err(|error| refused(&format!("it is not in the study any more: {error}")))?,
+    };
     if scene.solver.model != ModelKind::Film {
         return Err(refused("its model has no mesh; allowed: solver.model film"));
     }
@@ -164,20 +177,19 @@ fn written(
 /// Mass (kg) and temperature (K) of the gas when the lid releases the capsule: of the history where the job has run, else
 /// what has flowed in, at film temperature.
 fn gas_at_release(stored: &Stored<'_>, id: &JobId, scene: &Scene) -> Result<[f64; 2]> {
-    let release = scene.release_time;
+    let (release, schedule) = (scene.release_time, Schedule::of(&scene.gas));
     if stored.record(id).is_some_and(|record| record.file_hash.is_some()) {
         let history = history_file::read(&stored.history_path(id)?)?.history;
-        let column = |name: &str| history.column(name);
-        let times = column("time");
+        let times = history.column("time");
         let at = times.partition_point(|time| *time <= release).saturating_sub(1);
-        if let (Some(mass), Some(temperature)) =
-            (column("gas_mass").get(at), column("temperature").get(at))
-        {
-            return Ok([*mass, *temperature]);
+        let column = |name: &str| history.column(name).get(at).copied();
+        if let (Some(mass), Some(temperature)) = (column("gas_mass"), column("temperature")) {
+            // What flows in between the sample and the release.
+            let more = schedule.mass_until(release) - schedule.mass_until(times[at]);
+            return Ok([mass + more, temperature]);
         }
     }
-    let inflow = billow_solver::scene::inflow::Schedule::of(&scene.gas).mass_until(release);
-    Ok([scene.gas.initial_mass + inflow, scene.film.temperature])
+    Ok([scene.gas.initial_mass + schedule.mass_until(release), scene.film.temperature])
 }
 
 fn check_extension(path: &Path) -> Result<()> {

@@ -31,11 +31,16 @@ impl Proportion {
 
     /// The Wilson interval of the probability, 95 %; from 0 to 1 without any.
     pub fn wilson(self) -> [f64; 2] {
-        if self.of == 0 {
+        self.wilson_of(self.of)
+    }
+
+    /// The same where only this number of the n are independent.
+    pub fn wilson_of(self, independent: usize) -> [f64; 2] {
+        if self.of == 0 || independent == 0 {
             return [0.0, 1.0];
         }
-        let n = self.of as f64;
-        let p = self.met as f64 / n;
+        let n = independent as f64;
+        let p = self.met as f64 / self.of as f64;
         let spread = Z * libm::sqrt(p * (1.0 - p) / n + Z * Z / (4.0 * n * n));
         let middle = p + Z * Z / (2.0 * n);
         let scale = 1.0 + Z * Z / n;

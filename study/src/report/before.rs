@@ -67,7 +67,10 @@ impl Before {
         let changed: Vec<String> =
             outcomes.iter().map(|name| format!("another {name} at {}", differ(name))).collect();
         vec![
-            format!("this run has {}", self.changes.join(", ")),
+            match self.changes.as_slice() {
+                [] => "this run is written in another form".to_owned(),
+                changes => format!("this run has {}", changes.join(", ")),
+            },
             format!(
                 "{} of {} rows were in it, {} of them with the same job; {}",
                 matched.len(),

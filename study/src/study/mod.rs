@@ -174,7 +174,7 @@ impl Study {
         settings.tables = Arc::new(flow_table::of_study(&mut tree, &source)?);
         notes.extend(mesh_film::read_first(&mut tree, &mut settings, &source)?);
         let result_limits = result_limits::read(tree.get(LIMITS), &source)?;
-        let assumed = assumed::read(tree.get("assumed"), &source)?;
+        let mut assumed = assumed::read(tree.get("assumed"), &source)?;
         let context =
             Context { settings: &settings, limits: &result_limits, source: &source, max_points };
         let mut grid = Grid::read(&tree, context)?;
@@ -182,6 +182,8 @@ impl Study {
         mesh_film::refuse_design_keys(&settings, &grid, &source)?;
         mesh_film::read_others(&tree, &mut settings, &grid.mesh_values(), &source)?;
         let units = units::read(&tree, &settings, &source)?;
+        // A key that is sampled is not assumed.
+        assumed.leave_out(|key| grid.columns_sampled().any(|column| column.key.path == key));
         let (mut points, filtered) = expand::points(&settings, &grid, &source, max_points)?;
         meshes::refuse_other_models(&grid, &points, &source)?;
         notes.extend(parameters::alike(&points));

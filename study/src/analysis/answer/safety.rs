@@ -115,14 +115,14 @@ fn cause(
     let margin = |one: &AtLimit| one.judged.map_or(f64::INFINITY, |judged| judged.margin.abs());
     let nearest = runs.iter().flat_map(at).filter(uncertain);
     let Some(nearest) = nearest.min_by(|a, b| margin(a).total_cmp(&margin(b))) else {
-        return Some("seeds");
+        return Some("runs that differ");
     };
     let judged = nearest.judged?;
     let differs = |row: &usize| {
         table.judge(&nearest.limit, *row).is_some_and(|other| other.met != judged.met)
     };
     if runs.iter().any(differs) {
-        return Some("seeds");
+        return Some("runs that differ");
     }
     let Condition::Bound { above, .. } = nearest.limit.condition else { return None };
     let Some(mesh) = nearest.mesh_error else { return Some("mesh error not known") };

@@ -2,30 +2,33 @@
 //! the spread.
 //!
 //! ```text
-//! P(safe)       from the Wilson interval of the runs that are safe, its lower end, to that of those that are not unsafe, its
-//!               upper end: a run within its uncertainty is either
+//! P(safe)       from the lower end of the Wilson interval of the runs that are safe to the upper end of that of the runs
+//!               that are not unsafe: a run within its uncertainty, or without a result, may be either. Its n is the number
+//!               of samples, also where replicates repeat them
 //! quantile p    x_(⌈np⌉) of the sorted values; interval x_(l) to x_(u) with P(l ≤ Bin(n, p) < u) ≥ 95 %
-//! y' = Σ βⱼ xⱼ'           ranks of the measure and of the inputs, standardised; least squares
-//! part of input j         βⱼ r(xⱼ', y'): the parts sum to R² (J. W. Pratt, 1987), also where inputs are correlated
-//! spread²       = s² of the samples + s² of the other replicates + (mesh error/1.96)² + (assumed/1.96)²
+//! y' = Σ βⱼ xⱼ'           ranks of the measure and of the inputs, standardised; least squares; n samples, k inputs
+//! part of input j         βⱼ r(xⱼ', y'): these sum to R² (J. W. Pratt, 1987), also where inputs are correlated; scaled to
+//!                         R²_adj = 1 − (1 − R²)(n − 1)/(n − k − 1), so that noise explains nothing
+//! spread²       = s² of the samples + s² within a sample + (mesh error/1.96)² + (assumed/1.96)²
+//!                 s² of the samples: that of the means of their r runs, less s² within/r
 //! ```
 //!
-//! Intervals of parts are those of 200 resamples of the samples. Ranks see any monotonic effect; what no sum of them
+//! Intervals of parts are by the jackknife (B. Efron, 1982). Ranks see effects that rise or fall; what no sum of them
 //! explains is said as such.
 
 use std::collections::BTreeMap;
 
-use billow_solver::platform::random::{hash, unit};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::Serialize;
 
 use super::{bounds, parameters, parameters_of};
-use crate::analysis::replicates::{Condensed, source};
+use crate::analysis::replicates::{Condensed, finest, fixed, point_key, source};
 use crate::analysis::values::{canonical, measured};
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
+use crate::job::Status;
 use crate::job::proportion::Proportion;
-use crate::job::result_limit::ResultLimit;
+use crate::job::result_limit::{ResultLimit, Safety};
 use crate::job::row::{ColumnId, HEADLINE};
 use crate::store::table::{Column, Table};
 
@@ -33,10 +36,10 @@ use crate::store::table::{Column, Table};
 const QUANTILES: [f64; 3] = [0.05, 0.5, 0.95];
 /// Probability that an interval misses on each side.
 const MISSED: f64 = 0.025;
-/// Resamples for the intervals of parts. Chosen: their ends change by a few per cent with another number.
-const RESAMPLES: u64 = 200;
-/// Samples for each input below which the answer has no parts. Chosen: with fewer a fit explains noise.
-const SAMPLES_PER_INPUT: usize = 3;
+/// Groups of samples that the jackknife leaves out in turn, at most. Chosen: more change an end by a few per cent.
+const GROUPS: usize = 64;
+/// Samples for each input below which the answer has no parts. Chosen: the intervals are then wider than the parts.
+const SAMPLES_PER_INPUT: usize = 5;
 /// Half width of an interval of 95 % over the standard deviation.
 const Z: f64 = 1.959_963_984_540_054;
 /// Other causes than inputs, in a budget.
@@ -51,13 +54,17 @@ pub struct Tolerance {
     /// Its parameters, and the units in which they are shown.
     #[serde(serialize_with = "parameters")]
     pub parameters: Vec<(String, Value, DisplayUnit)>,
-    /// Number of runs with values.
+    /// Number of runs that have ended.
     pub runs: usize,
-    /// Of the runs that the limits can judge, those that are safe; none without limits.
+    /// Number of different samples among them.
+    pub samples: usize,
+    /// Number of these runs without a result that the limits can judge: they failed, or no fold pattern fits.
+    pub without_result: usize,
+    /// Of all these runs, those that are safe; none without limits.
     pub safe: Proportion,
     /// The probability that a run is safe: an interval, 95 %.
     pub safe_between: [f64; 2],
-    /// Number of runs that are unsafe; the others are within their uncertainty.
+    /// Number of runs that are unsafe; the others are within their uncertainty, or have no result.
     pub not_safe: usize,
     /// The run with the smallest margin: its job, the margin, the measure.
     pub nearest: Option<(String, f64, String)>,
@@ -117,30 +124,78 @@ impl Tolerance {
             return Vec::new();
         }
         let rows: Vec<usize> = (0..table.rows()).collect();
-        let points = Condensed::of(table, &table.one_row_per_job(&rows), replicates);
+        // A sample is a row, also where it shares its job.
+        let mut groups: BTreeMap<Vec<String>, Vec<usize>> = BTreeMap::new();
+        let fixed = fixed(table, replicates);
+        for row in &rows {
+            groups.entry(point_key(&fixed, *row)).or_default().push(*row);
+        }
+        let points = Condensed::of(table, &rows, replicates);
         let measures = measures(table, limits);
         let feasible: Vec<usize> = points.feasible().collect();
         let of = |point: &usize| {
             let runs = &points.runs[*point];
-            let spread = |measure: &ColumnId| {
-                Spread::of(table, table.column(measure.name())?, &runs.measured, sampled)
-            };
-            let nearest = runs.worst_margin(table).and_then(|(margin, measure, row)| {
-                Some((table.column("job")?.cells[row].to_string(), margin, measure))
-            });
-            let possible = Proportion { met: runs.safe.of - runs.not_safe, ..runs.safe };
-            Self {
-                parameters: parameters_of(&points.table, *point),
-                runs: runs.measured.len(),
-                safe: runs.safe,
-                safe_between: [runs.safe.wilson()[0], possible.wilson()[1]],
-                not_safe: runs.not_safe,
-                nearest,
-                measures: measures.iter().filter_map(spread).collect(),
-            }
+            let all = &groups[&point_key(&fixed, runs.rows[0])];
+            let (nearest, parameters) =
+                (runs.worst_margin(table), parameters_of(&points.table, *point));
+            Self::of(table, (all, nearest), parameters, (limits, &measures), sampled)
         };
         feasible.iter().map(of).collect()
     }
+
+    /// What the samples of one point say, in these rows; the smallest margin with its measure and row.
+    fn of(
+        table: &Table,
+        (rows, nearest): (&[usize], Option<(f64, String, usize)>),
+        parameters: Vec<(String, Value, DisplayUnit)>,
+        (limits, measures): (&[ResultLimit], &[ColumnId]),
+        sampled: &[String],
+    ) -> Self {
+        let mut ended = finest(table, rows);
+        ended.retain(|row| table.status(*row) != Some(Status::Pending));
+        let count = |wanted| ended.iter().filter(|row| table.safety(**row) == Some(wanted)).count();
+        let [safe, uncertain, not_safe] = Safety::ALL.map(count);
+        let of = if limits.is_empty() { 0 } else { ended.len() };
+        let samples = of_samples(table, &ended, sampled).len();
+        let met = |met: usize| Proportion { met, of };
+        let done = |row: &usize| table.status(*row) == Some(Status::Done);
+        let done: Vec<usize> = ended.iter().copied().filter(done).collect();
+        let trusted = |row: &usize| table.is_trusted(*row);
+        let trusted: Vec<usize> = done.iter().copied().filter(trusted).collect();
+        let measured = if trusted.is_empty() { &done } else { &trusted };
+        let spread = |measure: &ColumnId| {
+            Spread::of(table, table.column(measure.name())?, measured, sampled)
+        };
+        let with_result = if limits.is_empty() { done.len() } else { safe + uncertain + not_safe };
+        let possible = met(of.saturating_sub(not_safe)).wilson_of(samples);
+        let job = |row: usize| table.column("job").map(|jobs| jobs.cells[row].to_string());
+        Self {
+            parameters,
+            runs: ended.len(),
+            samples,
+            without_result: ended.len() - with_result,
+            safe: met(safe),
+            safe_between: [met(safe).wilson_of(samples)[0], possible[1]],
+            not_safe,
+            nearest: nearest.and_then(|(margin, name, row)| Some((job(row)?, margin, name))),
+            measures: measures.iter().filter_map(spread).collect(),
+        }
+    }
+}
+
+/// The runs of each sample among these rows.
+fn of_samples(
+    table: &Table,
+    rows: &[usize],
+    sampled: &[String],
+) -> BTreeMap<Vec<String>, Vec<usize>> {
+    let inputs: Vec<&Column> = table.parameters().filter(|c| sampled.contains(&c.name)).collect();
+    let mut samples: BTreeMap<Vec<String>, Vec<usize>> = BTreeMap::new();
+    for row in rows {
+        let key = inputs.iter().map(|input| canonical(&input.cells[*row])).collect();
+        samples.entry(key).or_default().push(*row);
+    }
+    samples
 }
 
 /// The measures that have a limit; without one, how soon and how hard.
@@ -163,21 +218,18 @@ impl Spread {
         let values_of = source(table, column);
         let inputs: Vec<&Column> =
             table.parameters().filter(|c| sampled.contains(&c.name)).collect();
-        // The runs of each sample, in the order of the samples.
-        let mut samples: BTreeMap<Vec<String>, Vec<usize>> = BTreeMap::new();
-        let mut values = Vec::new();
-        for row in rows.iter().filter(|row| measured(table, values_of, **row).is_some()) {
-            let key = inputs.iter().map(|input| canonical(&input.cells[*row])).collect();
-            samples.entry(key).or_default().push(*row);
-        }
-        let mut means = Vec::new();
-        let mut within = 0.0;
+        let value = |row: &usize| measured(table, values_of, *row);
+        let with_value: Vec<usize> =
+            rows.iter().copied().filter(|row| value(row).is_some()).collect();
+        let samples = of_samples(table, &with_value, sampled);
+        let (mut values, mut means) = (Vec::new(), Vec::new());
+        let (mut within, mut of_means) = (0.0, 0.0);
         for rows in samples.values() {
-            let of_sample: Vec<f64> =
-                rows.iter().filter_map(|row| measured(table, values_of, *row)).collect();
+            let of_sample: Vec<f64> = rows.iter().filter_map(value).collect();
             let (mean, variance) = moments(&of_sample);
             means.push(mean);
             within += variance / samples.len() as f64;
+            of_means += variance / (rows.len() * samples.len()) as f64;
             values.extend(of_sample);
         }
         if values.len() < 2 {
@@ -187,7 +239,7 @@ impl Spread {
         let quantiles = QUANTILES.map(|p| Quantile::of(&values, p, samples.len()));
         let first: Vec<usize> = samples.values().map(|rows| rows[0]).collect();
         let mut budget = Budget::default();
-        let between = moments(&means).1;
+        let between = (moments(&means).1 - of_means).max(0.0);
         budget.inputs(&inputs, &first, &means, between);
         budget.add(REPLICATES, within);
         let id = ColumnId::from_name(&column.name);
@@ -249,7 +301,9 @@ impl Quantile {
 /// Ranks l and u, from 1, between whose values a quantile of `n` values is in 19 of 20 cases: P(Bin(n, p) < l) and
 /// P(Bin(n, p) ≥ u) are at most 2.5 %.
 fn ranks(n: usize, p: f64) -> [Option<usize>; 2] {
-    let mut term = libm::exp(n as f64 * libm::log1p(-p));
+    // The logarithm of P(Bin = k): of many samples the probabilities at the ends are below the smallest f64.
+    let mut term = n as f64 * libm::log1p(-p);
+    let odds = libm::log(p / (1.0 - p));
     let mut below = 0.0;
     let (mut low, mut high) = (None, None);
     for k in 0..=n {
@@ -260,8 +314,8 @@ fn ranks(n: usize, p: f64) -> [Option<usize>; 2] {
         if high.is_none() && 1.0 - below <= MISSED {
             high = Some(k);
         }
-        below += term;
-        term *= (n - k) as f64 / (k + 1) as f64 * p / (1.0 - p);
+        below += libm::exp(term);
+        term += libm::log((n - k) as f64 / (k + 1) as f64) + odds;
     }
     [low, high]
 }
@@ -295,39 +349,23 @@ impl Budget {
                 .push("what each input makes: their ranks do not tell them apart".to_owned());
             return;
         };
-        let resampled = |k: u64| {
-            let draw = |i: usize| {
-                let at = unit(hash(k + 1, i as u64 + 1)) * rows.len() as f64;
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    reason = "below the length"
-                )]
-                let at = at as usize;
-                at
-            };
-            pratt(&columns, values, &(0..rows.len()).map(draw).collect::<Vec<_>>())
+        let groups = rows.len().min(GROUPS);
+        let without = |group: usize| {
+            let kept: Vec<usize> = all.iter().copied().filter(|i| i % groups != group).collect();
+            pratt(&columns, values, &kept)
         };
-        let resampled: Vec<Vec<f64>> = (0..RESAMPLES).filter_map(resampled).collect();
-        let mut explained = 0.0;
+        let jackknife: Option<Vec<Vec<f64>>> = (0..groups).map(without).collect();
         for (index, input) in inputs.iter().enumerate() {
-            let mut all: Vec<f64> = resampled.iter().map(|parts| parts[index].max(0.0)).collect();
-            all.sort_by(f64::total_cmp);
-            let end = |p: f64| {
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    reason = "between 0 and 1"
-                )]
-                let at = (p * (all.len() - 1) as f64) as usize;
-                variance * all[at]
-            };
-            let between = (all.len() > 1).then(|| [end(MISSED), end(1.0 - MISSED)]);
-            let part = parts[index].max(0.0);
-            explained += part;
-            self.parts.push(Part { name: input.name.clone(), part: variance * part, between });
+            let between = jackknife.as_ref().map(|jackknife| {
+                let of: Vec<f64> = jackknife.iter().map(|parts| parts[index]).collect();
+                let g = groups as f64;
+                let half = Z * libm::sqrt(moments(&of).1 / g) * (g - 1.0);
+                [parts[index] - half, parts[index] + half].map(|end| variance * end.clamp(0.0, 1.0))
+            });
+            let part = variance * parts[index];
+            self.parts.push(Part { name: input.name.clone(), part, between });
         }
-        self.add(UNEXPLAINED, variance * (1.0 - explained).max(0.0));
+        self.add(UNEXPLAINED, variance * (1.0 - parts.iter().sum::<f64>()).max(0.0));
     }
 }
 
@@ -370,21 +408,29 @@ fn standardised_ranks(values: &[f64], places: &[usize]) -> Option<Vec<f64>> {
     (deviation > 0.0).then(|| ranks.iter().map(|rank| (rank - mean) / deviation).collect())
 }
 
-/// The part of each input in the spread of the ranks of some values, at these places.
+/// The part of each input in the spread of the ranks of some values, at these places; not below 0, and together not more
+/// than the ranks explain.
 fn pratt(inputs: &[Vec<f64>], values: &[f64], places: &[usize]) -> Option<Vec<f64>> {
-    let n = places.len();
+    let (n, k) = (places.len(), inputs.len());
     let y = DVector::from_vec(standardised_ranks(values, places)?);
     let ranks: Option<Vec<Vec<f64>>> =
         inputs.iter().map(|input| standardised_ranks(input, places)).collect();
-    let x = DMatrix::from_vec(n, inputs.len(), ranks?.concat());
+    let x = DMatrix::from_vec(n, k, ranks?.concat());
     let correlation = x.transpose() * &y / (n as f64 - 1.0);
     let matrix = x.transpose() * &x / (n as f64 - 1.0);
     let beta = Cholesky::new(matrix)?.solve(&correlation);
-    Some(beta.iter().zip(correlation.iter()).map(|(b, r)| b * r).collect())
+    let parts: Vec<f64> = beta.iter().zip(correlation.iter()).map(|(b, r)| b * r).collect();
+    let explained: f64 = parts.iter().sum();
+    let adjusted = 1.0 - (1.0 - explained) * (n as f64 - 1.0) / (n as f64 - k as f64 - 1.0);
+    let positive: f64 = parts.iter().map(|part| part.max(0.0)).sum();
+    let scale = if positive > 0.0 { adjusted.max(0.0) / positive } else { 0.0 };
+    Some(parts.iter().map(|part| scale * part.max(0.0)).collect())
 }
 
 #[cfg(test)]
 mod tests {
+    use billow_solver::platform::random::{hash, unit};
+
     use super::*;
     use crate::analysis::fixture;
 
@@ -407,7 +453,7 @@ mod tests {
     #[test]
     fn parts_are_those_of_the_variance_of_a_sum() {
         let (table, inputs) = (table(400), names(&["a", "b"]));
-        let found = Tolerance::all(&table, &[], &inputs, &inputs);
+        let found = Tolerance::all(&table, &fixture::limits(13.0), &inputs, &inputs);
         let [point] = found.as_slice() else { panic!("{found:?}") };
         let spread = point.measures.iter().find(|one| one.measure == "peak_vz").unwrap();
         // Var = 9/12 + 1/12 + 0.01/12.
@@ -430,6 +476,14 @@ mod tests {
     fn ranks_of_quantiles_are_those_of_the_binomial_distribution() {
         // Conover, "Practical nonparametric statistics": the median of 20 is between x₆ and x₁₅.
         assert_eq!(ranks(20, 0.5), [Some(6), Some(15)]);
+        // Of many samples, where 0.05ⁿ is below the smallest f64: the mirror, and the normal distribution.
+        for n in [256, 5000] {
+            let ([low, high], [other, _]) = (ranks(n, 0.95), ranks(n, 0.05));
+            assert_eq!(other, high.map(|rank| n + 1 - rank), "{n}");
+            let half = Z * libm::sqrt(n as f64 * 0.95 * 0.05);
+            let exact = 0.95 * n as f64 - half;
+            assert!((low.unwrap() as f64 - exact).abs() < 2.5, "{n}: {low:?} to {high:?}");
+        }
         // 0.95¹⁰ > 2.5 %: ten samples say nothing of what is below the quantile of 5 %.
         assert_eq!(ranks(10, 0.05)[0], None);
         let sorted: Vec<f64> = (1..=100).map(f64::from).collect();
@@ -439,11 +493,42 @@ mod tests {
     }
 
     #[test]
+    fn noise_explains_little() {
+        let explained = |trial: u64| -> f64 {
+            let draw = |seed: u64| -> Vec<f64> {
+                (1..=64).map(|i| unit(hash(100 * trial + seed, i))).collect()
+            };
+            let inputs: Vec<Vec<f64>> = (1..=8).map(draw).collect();
+            pratt(&inputs, &draw(9), &(0..64).collect::<Vec<_>>()).unwrap().iter().sum()
+        };
+        let mean = (0..60).map(explained).sum::<f64>() / 60.0;
+        assert!(mean < 0.06, "{mean}");
+    }
+
+    #[test]
+    fn runs_without_a_result_widen_the_interval_and_replicates_do_not_narrow_it() {
+        let row = |i: u32| {
+            let (sample, seed) = (i / 2, i % 2);
+            let outcome = if sample < 8 { "done 10.0 safe" } else { "unstable - -" };
+            format!("j{i} {sample}.5 {seed} {outcome}")
+        };
+        let table = fixture::table_of("job a seed status peak_vz safety", (0..20).map(row));
+        let limits = fixture::limits(30.0);
+        let found = Tolerance::all(&table, &limits, &names(&["a", "seed"]), &names(&["a"]));
+        let [point] = found.as_slice() else { panic!("{found:?}") };
+        assert_eq!((point.runs, point.samples, point.without_result), (20, 10, 4));
+        assert_eq!(point.safe, Proportion { met: 16, of: 20 });
+        let ten = Proportion { met: 8, of: 10 };
+        assert!((point.safe_between[0] - ten.wilson()[0]).abs() < 1e-12);
+        assert!((point.safe_between[1] - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
     fn few_samples_tell_no_parts() {
-        let (table, inputs) = (table(5), names(&["a", "b"]));
+        let (table, inputs) = (table(9), names(&["a", "b"]));
         let found = Tolerance::all(&table, &[], &inputs, &inputs);
         let spread = &found[0].measures.last().unwrap();
         assert_eq!(spread.parts[0].name, "inputs together");
-        assert!(spread.without[0].contains("5 samples, 6 needed"), "{:?}", spread.without);
+        assert!(spread.without[0].contains("9 samples, 10 needed"), "{:?}", spread.without);
     }
 }

@@ -60,12 +60,19 @@ fn of_choice(choice: &Ranking, counts: &SafeCounts) -> String {
 /// "strategy=delayed: safe with a probability of 92 to 100 % (…); strategy=rapid: …", the safest first.
 fn of_samples(points: &[Tolerance]) -> String {
     let mut order: Vec<&Tolerance> = points.iter().collect();
-    order.sort_by_key(|point| std::cmp::Reverse((point.safe.met, point.safe.of - point.not_safe)));
+    order.sort_by(|a, b| {
+        let (a, b) = (a.safe_between, b.safe_between);
+        b[0].total_cmp(&a[0]).then(b[1].total_cmp(&a[1]))
+    });
     let text = |point: &&Tolerance| match parameters_text(&point.parameters) {
         name if name.is_empty() => probability(point),
         name => format!("{name}: {}", probability(point)),
     };
-    order.iter().take(MAX_POINTS).map(text).collect::<Vec<_>>().join("; ")
+    let mut texts: Vec<String> = order.iter().take(MAX_POINTS).map(text).collect();
+    if order.len() > MAX_POINTS {
+        texts.push(format!("and {} more", count(order.len() - MAX_POINTS, "point")));
+    }
+    texts.join("; ")
 }
 
 fn of_points(counts: &SafeCounts) -> String {

@@ -29,7 +29,7 @@ fn of_point(point: &Tolerance) -> Vec<String> {
     if point.safe.of > 0 {
         text.push_str(&probability(point));
     } else {
-        let _ = write!(text, "{}", count(point.runs, "sample"));
+        let _ = write!(text, "{}", count(point.samples, "sample"));
     }
     if let Some((job, margin, measure)) = &point.nearest {
         let job = &job[..8.min(job.len())];
@@ -70,10 +70,18 @@ fn of_point(point: &Tolerance) -> Vec<String> {
 pub(super) fn probability(point: &Tolerance) -> String {
     let [low, high] = point.safe_between.map(|end| 100.0 * end);
     let Proportion { met, of } = point.safe;
-    let within = of - met - point.not_safe;
+    let noun = match point.samples {
+        samples if samples == of => "samples".to_owned(),
+        samples => format!("runs of {samples} samples"),
+    };
+    let within = of - met - point.not_safe - point.without_result;
     let mut text =
-        format!("safe with a probability of {low:.0} to {high:.0} % ({met} of {of} samples safe");
-    for (number, what) in [(point.not_safe, "unsafe"), (within, "within their uncertainty")] {
+        format!("safe with a probability of {low:.0} to {high:.0} % ({met} of {of} {noun} safe");
+    for (number, what) in [
+        (point.not_safe, "unsafe"),
+        (within, "within their uncertainty"),
+        (point.without_result, "without a result"),
+    ] {
         if number > 0 {
             let _ = write!(text, ", {number} {what}");
         }

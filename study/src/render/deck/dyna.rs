@@ -9,8 +9,8 @@ use super::{Deck, MOLAR_GAS_CONSTANT, VACUUM, number};
 
 /// Compression fraction from which the law keeps the compression stiffness.
 const KEEPS_COMPRESSION: f64 = 0.5;
-/// First curve of mass flow rates, and of temperatures.
-const CURVES: [usize; 2] = [101, 201];
+/// First curve of a mass flow rate; those of temperatures follow.
+const FIRST_CURVE: usize = 101;
 /// Time in which a flow begins or ends, s.
 const RAMP: f64 = 1e-8;
 
@@ -179,11 +179,11 @@ fn gas(text: &mut String, deck: &Deck<'_>) {
     let density = pressure / (species.gas_constant * temperature);
     for (index, inflow) in inflows.iter().enumerate() {
         let title = format!("inflow {}, kg/s", index + 1);
-        curve(text, CURVES[0] + index, &title, &rate(&inflow.mass));
+        curve(text, FIRST_CURVE + index, &title, &rate(&inflow.mass));
         let title = format!("temperature of inflow {}, K", index + 1);
         curve(
             text,
-            CURVES[1] + index,
+            FIRST_CURVE + inflows.len() + index,
             &title,
             &[[0.0, inflow.temperature], [1e6, inflow.temperature]],
         );
@@ -197,7 +197,13 @@ fn gas(text: &mut String, deck: &Deck<'_>) {
     integers(text, &[0, 0, inflows.len(), 0, 0, 0]);
     for (index, _) in inflows.iter().enumerate() {
         let first = if index == 0 { 1.0 } else { 0.0 };
-        let _ = write!(text, "{:>10}{:>10}{:>10}", CURVES[0] + index, CURVES[1] + index, "");
+        let _ = write!(
+            text,
+            "{:>10}{:>10}{:>10}",
+            FIRST_CURVE + index,
+            FIRST_CURVE + inflows.len() + index,
+            ""
+        );
         card(text, &[mass, first, cp * mass, 0.0, 0.0]);
         card(text, &[0.0]);
     }

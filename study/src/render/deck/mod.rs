@@ -4,8 +4,8 @@
 //! law of fabric, the gas in a control volume with its inflow, self contact, supports, and what is to be written. What
 //! billow has and such a code has not is said in comments at its head ([`Deck::differences`]).
 //!
-//! The control volumes of these codes hold ambient gas at the start and no other. So the gas that is inside flows in
-//! within 0.1 ms. A vessel that was empty is then at T = γ `T_in`, so it flows in at T/γ.
+//! The control volumes of these codes hold ambient gas at the start and no other. So the gas that is inside beyond it
+//! flows in within 0.1 ms. A vessel that was empty is then at T = γ `T_in`, so it flows in at T/γ.
 
 use std::fmt::Write as _;
 
@@ -26,6 +26,8 @@ const FILL_TIME: f64 = 1e-4;
 const EXCHANGE_TIME: f64 = 1e-3;
 /// External pressure where there is none, Pa: 0 may mean that of the atmosphere.
 const VACUUM: f64 = 1e-6;
+/// Part of a mass that counts as none. Chosen: far above rounding of a volume.
+const MAX_MISSING: f64 = 1e-3;
 /// Universal gas constant, J/(mol K) (CODATA 2018).
 const MOLAR_GAS_CONSTANT: f64 = 8.314_462_618;
 
@@ -72,6 +74,13 @@ impl<'a> Deck<'a> {
         if !shell.is_closed() || !shell.closure.is_empty() {
             return Err("its film is open; allowed: film that encloses its volume".to_owned());
         }
+        if self.gas[0] < (1.0 - MAX_MISSING) * self.ambient_mass() {
+            let problem = "it starts with less gas than ambient gas in its volume";
+            return Err(format!("{problem}; allowed: residual gas \"ambient\", or more"));
+        }
+        if self.inflows().is_empty() {
+            return Err("no gas flows in after the release; allowed: film with gas".to_owned());
+        }
         Ok(self)
     }
 
@@ -80,6 +89,20 @@ impl<'a> Deck<'a> {
             Filling::Gas { supply, .. } => supply,
             Filling::Pressure(_) => unreachable!("a deck is checked"),
         }
+    }
+
+    /// The ambient gas that fills the volume at the start, kg.
+    fn ambient_mass(&self) -> f64 {
+        let FilmScene { shell, film, .. } = self.film;
+        let volume = shell.volume(|node| shell.positions[node as usize]);
+        let supply = self.supply();
+        supply.ambient_pressure * volume / (supply.species.gas_constant * film.temperature)
+    }
+
+    /// The gas inside at the start beyond the ambient gas, kg.
+    fn beyond_ambient(&self) -> f64 {
+        let beyond = self.gas[0] - self.ambient_mass();
+        if beyond > MAX_MISSING * self.gas[0] { beyond } else { 0.0 }
     }
 
     /// Time from the release to the end, s.
@@ -126,8 +149,8 @@ impl<'a> Deck<'a> {
 
     /// The gas inside at the start, then one flow for each window that is open after the release.
     fn inflows(&self) -> Vec<Inflow> {
-        let (supply, release, [mass, temperature]) =
-            (self.supply(), self.film.release_time, self.gas);
+        let (supply, release) = (self.supply(), self.film.release_time);
+        let (mass, temperature) = (self.beyond_ambient(), self.gas[1]);
         let mut inflows = Vec::new();
         if mass > 0.0 {
             let gamma = supply.species.gamma(temperature);
@@ -187,11 +210,17 @@ impl<'a> Deck<'a> {
                 film.compression
             ),
         ];
-        let [mass, temperature] = self.gas;
+        let (mass, temperature) = (self.beyond_ambient(), self.gas[1]);
         if mass > 0.0 {
             lines.push(format!(
-                "The {mass:.6e} kg of gas inside at {temperature} K flow in within {FILL_TIME} s."
+                "The {mass:.6e} kg of gas inside at {temperature} K, beyond ambient gas, flow in within {FILL_TIME} s."
             ));
+        }
+        if *release_time > 0.0 {
+            lines.push(
+                "Shape and velocities are those of time 0 of the job, stowed and at rest."
+                    .to_owned(),
+            );
         }
         let mut left_out = |is: bool, what: &str| {
             if is {

@@ -17,6 +17,13 @@ const DAMPING: f64 = 0.05;
 /// A coefficient that is to be small, because 0 means a default.
 const SMALL: f64 = 1e-6;
 
+/// Damping ratio of the membrane.
+fn damping(deck: &Deck<'_>) -> f64 {
+    let film = &deck.film.film;
+    let least = if film.compression < 1.0 { DAMPING } else { SMALL };
+    film.numerical_damping.max(least)
+}
+
 /// Lines of nodes, ten each.
 fn node_lines(text: &mut String, nodes: impl Iterator<Item = usize>) {
     let nodes: Vec<usize> = nodes.collect();
@@ -34,6 +41,8 @@ pub fn starter_file(deck: &Deck<'_>) -> String {
     for line in deck.differences() {
         let _ = writeln!(text, "# {line}");
     }
+    let (here, job) = (damping(deck), deck.film.film.numerical_damping);
+    let _ = writeln!(text, "# Damping ratio of the membrane {here}; the job has {job}.");
     let _ = writeln!(text, "/BEGIN\n{}\n{FORMAT:>10}{:>10}", deck.name, 0);
     for _ in 0..2 {
         let _ = writeln!(text, "{:>20}{:>20}{:>20}", "kg", "m", "s");
@@ -55,7 +64,7 @@ fn film(text: &mut String, deck: &Deck<'_>) {
     let (stiffness, ratio) = (film.youngs_modulus, film.poisson_ratio);
     let shear = stiffness / (2.0 * (1.0 + ratio));
     let compression = film.compression.max(MIN_COMPRESSION);
-    let damping = if film.compression < 1.0 { DAMPING } else { film.numerical_damping.max(SMALL) };
+    let damping = damping(deck);
     let _ = write!(
         text,
         "/MAT/LAW19/1\nfilm\n{}\n{}\n{}\n{}{:>20}{:>20}{:>10}\n",

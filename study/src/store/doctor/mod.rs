@@ -190,6 +190,15 @@ fn check_checkpoints(results: &Results<'_>, health: &mut Health) {
     }
 }
 
+/// The study of the run before, which only the report reads.
+fn check_previous(results: &Results<'_>, health: &mut Health) {
+    let path = results.previous_path();
+    if path.is_file() && Study::load(&path, &[]).is_err() {
+        let next = "remove it: a report then compares with no run before";
+        health.note(&path, "not a study that this program reads".to_owned(), next);
+    }
+}
+
 fn check_study(results: &Results<'_>, health: &mut Health) -> Option<Study> {
     let path = results.study_path();
     let root = quote::path(results.root());
@@ -201,7 +210,10 @@ fn check_study(results: &Results<'_>, health: &mut Health) -> Option<Study> {
         Err(error) => health.error(&path, &error),
         Ok(None) => health.fault(&path, "missing: nothing says which study this is", &next),
         Ok(Some(_)) => match Study::load(&path, &[]) {
-            Ok(study) => return Some(study),
+            Ok(study) => {
+                check_previous(results, health);
+                return Some(study);
+            }
             Err(error) => {
                 health.error(&path, &error);
                 if let Some(last) = health.findings.last_mut() {

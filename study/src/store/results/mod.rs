@@ -40,8 +40,9 @@ pub const SUBMISSION: &str = "submission";
 /// Name of the folder with the results of the tasks of a scheduler.
 pub const PARTS: &str = "parts";
 /// Names that a run writes into a results folder.
-pub const RESULT_NAMES: [&str; 12] = [
+pub const RESULT_NAMES: [&str; 13] = [
     "study.json",
+    "previous.json",
     "journal",
     "jobs",
     "checkpoints",

@@ -108,10 +108,15 @@ impl Grid {
         self.axes.iter().find(|axis| axis.kind == AxisKind::Samples)
     }
 
+    /// The columns of the inputs that are sampled.
+    pub fn columns_sampled(&self) -> impl Iterator<Item = &Column> {
+        let columns = self.samples().into_iter().flat_map(|axis| &axis.columns);
+        columns.map(|column| &self.columns[*column])
+    }
+
     /// Names of the inputs that are sampled.
     pub fn sampled(&self) -> Vec<String> {
-        let columns = self.samples().into_iter().flat_map(|axis| &axis.columns);
-        columns.map(|column| self.columns[*column].name.clone()).collect()
+        self.columns_sampled().map(|column| column.name.clone()).collect()
     }
 
     /// Whether a column is that of an input that is sampled.

@@ -220,7 +220,14 @@ impl Grid {
             let problem = error.to_string();
             source.error("grid.filter", "", problem, error.allowed)
         })?;
-        if let Some(replicate) = self.replicate_in(text).filter(|_| self.search.is_some()) {
+        if let Some(input) = self.repeated_in(text, |kind| kind == AxisKind::Samples) {
+            let problem =
+                format!("names {input}, an input that is sampled: every point has all samples");
+            let allowed = "a condition on the other keys; \"from\" and \"to\" cut a distribution";
+            return Err(source.error("grid.filter", json, problem, allowed));
+        }
+        let replicate = self.repeated_in(text, AxisKind::repeats);
+        if let Some(replicate) = replicate.filter(|_| self.search.is_some()) {
             let problem =
                 format!("names {replicate}, a replicate, of which a search needs all values");
             let allowed = "a condition on the other keys";
@@ -230,11 +237,11 @@ impl Grid {
         Ok(())
     }
 
-    /// The first replicate that a condition names.
-    fn replicate_in(&self, condition: &str) -> Option<String> {
+    /// The first key on an axis of such a kind that a condition names.
+    fn repeated_in(&self, condition: &str, is: fn(AxisKind) -> bool) -> Option<String> {
         expression::names(condition).into_iter().find(|name| {
-            let replicate = |column: &usize| keys::find(name) == Some(self.columns[*column].index);
-            self.replicates().any(|axis| axis.columns.iter().any(replicate))
+            let named = |column: &usize| keys::find(name) == Some(self.columns[*column].index);
+            self.axes.iter().any(|axis| is(axis.kind) && axis.columns.iter().any(named))
         })
     }
 

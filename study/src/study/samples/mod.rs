@@ -22,6 +22,8 @@ use sequence::Method;
 
 /// The keys of the section.
 const KEYS: [&str; 5] = ["number", "of", "method", "seed", "correlations"];
+/// Smallest part of a distribution between the ends that cut it.
+const MIN_REST: f64 = 1e-6;
 /// The distributions of numbers.
 const KINDS: [&str; 5] = ["uniform", "log_uniform", "normal", "log_normal", "triangular"];
 /// What the section must look like, for errors.
@@ -142,6 +144,10 @@ impl Grid {
                 place.ok_or_else(|| refuse("names a key that is not an input"))
             };
             let pair = (input(a)?, input(b)?);
+            let known = |(a, b, _): &(usize, usize, f64)| (*a, *b) == pair || (*b, *a) == pair;
+            if all.iter().any(known) {
+                return Err(refuse("gives the correlation of two inputs again"));
+            }
             if pair.0 == pair.1 || !(-1.0..=1.0).contains(&rank) || rank.abs() >= 1.0 {
                 return Err(refuse("is no rank correlation of two inputs"));
             }
@@ -204,6 +210,11 @@ fn read(key: &Key, json: &Json, path: &str, source: &Source) -> Result<Distribut
         parts.iter().filter(|(name, _)| name != "from" && name != "to").collect();
     let given = |name: &str| json.get(name);
     if let Some(values) = given("values") {
+        let known = ["values", "weights"];
+        if let Some((name, _)) = parts.iter().find(|(name, _)| !known.contains(&name.as_str())) {
+            let near = or_nearest(name, known.iter().copied());
+            return Err(refuse(&format!("has {name} beside a list of values{near}")));
+        }
         return choice(key, values, given("weights"), path, source);
     }
     let [(name, numbers)] = kinds.as_slice() else {
@@ -299,8 +310,9 @@ fn truncated(
     }
     // Far beyond any value that is drawn.
     let ends = [from.unwrap_or(-f64::MAX), to.unwrap_or(f64::MAX)];
-    if ends[0] >= ends[1] || of.part_below(ends[1]) <= of.part_below(ends[0]) {
-        let problem = "has nothing between \"from\" and \"to\"";
+    // Further out the quantiles of the rest have too few digits.
+    if ends[0] >= ends[1] || of.part_below(ends[1]) - of.part_below(ends[0]) < MIN_REST {
+        let problem = "has hardly anything between \"from\" and \"to\"";
         return Err(source.error(path, json, problem, DISTRIBUTION));
     }
     Ok(Distribution::Truncated(Box::new(of), ends))

@@ -28,7 +28,7 @@ pub(super) enum Method {
 pub(super) fn points(method: Method, seed: u32, number: usize, inputs: usize) -> Vec<Vec<f64>> {
     match method {
         Method::Sobol => {
-            // Halfway between two numbers of the sequence, so that none is 0.
+            // Within the first of the steps of the sequence, 2⁻²³, so that no coordinate is 0.
             let half = 0.5 * f64::from(f32::EPSILON) / 2.0;
             let coordinate = |sample: u32, input: u32| {
                 f64::from(sobol_burley::sample(sample, input, seed)) + half
