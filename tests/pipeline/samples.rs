@@ -52,7 +52,7 @@ fn the_tolerances_of_a_piston_are_those_of_its_closed_form() {
     let (flow, temperature) = (0.4 / 12.0_f64.sqrt(), 0.02_f64);
     close(&spread["deviation"], median * flow.hypot(temperature), 0.03);
     let part = |name: &str| {
-        let parts = spread["parts"].as_array().unwrap();
+        let parts = spread["inputs"].as_array().unwrap();
         parts.iter().find(|part| part["name"] == name).unwrap().clone()
     };
     close(

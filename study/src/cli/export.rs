@@ -40,7 +40,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE", required_unless_present = "deck")]
     pub out: Option<PathBuf>,
     /// Only these columns of the histories, comma-separated [default: all].
-    #[arg(long, value_name = "COLUMNS", value_delimiter = ',', requires = "out")]
+    #[arg(long, value_name = "COLUMNS", value_delimiter = ',', conflicts_with = "deck")]
     pub columns: Vec<String>,
     /// Write the stowed film of a job as the input of another explicit finite element code, in kg, m, s: `radioss DIR`
     /// writes two files into a folder, `dyna FILE.k` one for LS-DYNA. What it leaves out is said in its first lines.
@@ -112,6 +112,12 @@ fn decks(args: &Args, of: &[String], out: &mut dyn Write) -> Result<()> {
     let stored = results::read(&root)?;
     let id = stored.job(job)?;
     let files = written(&stored, &id, code, path)?;
+    let ends_in_k = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("k"));
+    if code == Code::Dyna && !ends_in_k {
+        let (value, problem) = (path.display().to_string(), "is not a keyword file");
+        let allowed = "a file name that ends in .k";
+        return Err(Error::invalid_option("--deck dyna", &value, problem, allowed, ""));
+    }
     if code == Code::Radioss {
         if path.is_file() {
             let (value, problem) = (path.display().to_string(), "is a file");

@@ -216,7 +216,7 @@ pub fn folder_of_job(job: &str, given: &StudyArgs) -> Result<PathBuf> {
             job,
             "is a results folder or study file, not a job",
             "the first digits of a job id, then the results",
-            format!("billow table {job} --columns job,status lists the ids"),
+            format!("billow table {job} --runs --columns job,status lists the ids"),
         ));
     }
     folder(given)

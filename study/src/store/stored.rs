@@ -237,7 +237,7 @@ impl<'a> Stored<'a> {
             } else {
                 format!("the first digits of one id: {}", allowed.join("; "))
             },
-            hint: format!("billow table {} --columns job", quote::path(self.results.root())),
+            hint: format!("billow table {} --runs --columns job", quote::path(self.results.root())),
         }
         .into()
     }

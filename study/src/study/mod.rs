@@ -229,6 +229,13 @@ impl Study {
         self.grid.sampled()
     }
 
+    /// Names of the parameters that repeat a sample of a point; without samples [`Self::replicates`]. Comparisons pair equal
+    /// samples, so a sample is a point to them.
+    pub fn replicates_of_samples(&self) -> Vec<String> {
+        let sampled = self.sampled();
+        self.replicates().into_iter().filter(|name| !sampled.contains(name)).collect()
+    }
+
     /// Names of the parameters whose values repeat a point.
     pub fn replicates(&self) -> Vec<String> {
         self.grid.repeated()

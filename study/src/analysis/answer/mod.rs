@@ -31,7 +31,7 @@ mod trust;
 pub use points::{MixedPoint, PointCounts, VerdictSensitivity};
 pub use safety::{Nearest, SafeCounts, Safety};
 pub use searches::{Found, Searches};
-pub use tolerances::{Part, Quantile, Tolerance};
+pub use tolerances::{MESH, Part, Quantile, Tolerance};
 pub use trust::Trust;
 
 /// Most values of a parameter that the answer compares. Chosen: more are a chart, or `billow compare --rank`.
@@ -204,8 +204,8 @@ fn comparisons(
     rows: &[usize],
     study: &Study,
 ) -> Vec<(String, Result<Ranking, String>)> {
-    let replicates = study.replicates();
-    let varied = table.parameters().filter(|column| !replicates.contains(&column.name));
+    let (repeated, replicates) = (study.replicates(), study.replicates_of_samples());
+    let varied = table.parameters().filter(|column| !repeated.contains(&column.name));
     let compared = varied.filter_map(|column| {
         let values = compare::values(column, rows).len();
         let name = column.name.clone();

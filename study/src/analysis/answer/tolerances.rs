@@ -43,7 +43,9 @@ const SAMPLES_PER_INPUT: usize = 5;
 /// Half width of an interval of 95 % over the standard deviation.
 const Z: f64 = 1.959_963_984_540_054;
 /// Other causes than inputs, in a budget.
-const MESH: &str = "mesh error";
+const SAMPLES: &str = "samples";
+/// That part of a budget.
+pub const MESH: &str = "mesh error";
 const ASSUMED: &str = "assumed values";
 const REPLICATES: &str = "replicates";
 const UNEXPLAINED: &str = "not explained by ranks";
@@ -84,9 +86,11 @@ pub struct Spread {
     pub quantiles: Vec<Quantile>,
     /// Standard deviation of all that is known together, SI.
     pub deviation: f64,
-    /// What makes the spread, the largest first: name, part of the squared deviation.
-    pub parts: Vec<Part>,
-    /// What is not in the parts, and why.
+    /// What makes it, the largest first, as parts of its square: the samples, replicates, mesh error, assumed values.
+    pub budget: Vec<Part>,
+    /// What makes the spread of the samples, the largest first, as parts of its square: each input, and the rest.
+    pub inputs: Vec<Part>,
+    /// What is not known, and why.
     pub without: Vec<String>,
 }
 
@@ -104,9 +108,9 @@ pub struct Quantile {
 /// A part of a spread.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Part {
-    /// An input, or what else it is.
+    /// What makes it.
     pub name: String,
-    /// Its part of the squared deviation.
+    /// Its part, from 0 to 1.
     pub part: f64,
     /// The interval of the part of an input, 95 %.
     pub between: Option<[f64; 2]>,
@@ -238,38 +242,37 @@ impl Spread {
         values.sort_by(f64::total_cmp);
         let quantiles = QUANTILES.map(|p| Quantile::of(&values, p, samples.len()));
         let first: Vec<usize> = samples.values().map(|rows| rows[0]).collect();
-        let mut budget = Budget::default();
         let between = (moments(&means).1 - of_means).max(0.0);
-        budget.inputs(&inputs, &first, &means, between);
-        budget.add(REPLICATES, within);
+        let mut without = Vec::new();
+        let mut variances = vec![(SAMPLES, between), (REPLICATES, within)];
         let id = ColumnId::from_name(&column.name);
-        let all: Vec<usize> = samples.values().flatten().copied().collect();
         let half = |which: usize| -> Option<f64> {
-            let sides = all.iter().map(|row| table.error_parts(id?, *row)[which]);
+            let sides = with_value.iter().map(|row| table.error_parts(id?, *row)[which]);
             let halves: Option<Vec<f64>> =
                 sides.map(|sides| sides.map(|[a, b]| 0.5 * (a + b) / Z)).collect();
             halves.map(|halves| moments(&halves).0)
         };
-        for (which, name) in [MESH, ASSUMED].iter().enumerate() {
+        for (which, name) in [MESH, ASSUMED].into_iter().enumerate() {
             match half(which) {
-                Some(deviation) => budget.add(name, deviation * deviation),
-                None => budget.without.push(format!("{name}: not known")),
+                Some(deviation) => variances.push((name, deviation * deviation)),
+                None => without.push(format!("{name}: not known")),
             }
         }
-        let all: f64 = budget.parts.iter().map(|part| part.part).sum();
-        for part in &mut budget.parts {
-            part.part /= all;
-            part.between = part.between.map(|ends| ends.map(|end| end / all));
-        }
-        budget.parts.retain(|part| part.part > 0.0);
-        budget.parts.sort_by(|a, b| b.part.total_cmp(&a.part));
+        let all: f64 = variances.iter().map(|(_, variance)| variance).sum();
+        let part = |(name, variance): (&str, f64)| Part::new(name, variance / all);
+        let budget = variances.into_iter().filter(|(_, variance)| *variance > 0.0).map(part);
+        let inputs = of_inputs(&inputs, &first, &means).unwrap_or_else(|problem| {
+            without.push(problem);
+            Vec::new()
+        });
         Some(Self {
             measure: column.name.clone(),
             shown: column.shown.clone(),
             quantiles: quantiles.to_vec(),
             deviation: libm::sqrt(all),
-            parts: budget.parts,
-            without: budget.without,
+            budget: largest_first(budget.collect()),
+            inputs: largest_first(inputs),
+            without,
         })
     }
 }
@@ -320,53 +323,48 @@ fn ranks(n: usize, p: f64) -> [Option<usize>; 2] {
     [low, high]
 }
 
-/// What makes a spread.
-#[derive(Default)]
-struct Budget {
-    parts: Vec<Part>,
-    without: Vec<String>,
+impl Part {
+    fn new(name: &str, part: f64) -> Self {
+        Self { name: name.to_owned(), part, between: None }
+    }
 }
 
-impl Budget {
-    fn add(&mut self, name: &str, variance: f64) {
-        self.parts.push(Part { name: name.to_owned(), part: variance, between: None });
-    }
+fn largest_first(mut parts: Vec<Part>) -> Vec<Part> {
+    parts.sort_by(|a, b| b.part.total_cmp(&a.part));
+    parts
+}
 
-    /// Adds the inputs: `values` of a measure, one at each row.
-    fn inputs(&mut self, inputs: &[&Column], rows: &[usize], values: &[f64], variance: f64) {
-        let needed = SAMPLES_PER_INPUT * inputs.len().max(2);
-        if rows.len() < needed {
-            self.add("inputs together", variance);
-            self.without
-                .push(format!("what each input makes: {} samples, {needed} needed", rows.len()));
-            return;
-        }
-        let columns: Vec<Vec<f64>> = inputs.iter().map(|input| numbers(input, rows)).collect();
-        let all: Vec<usize> = (0..rows.len()).collect();
-        let Some(parts) = pratt(&columns, values, &all) else {
-            self.add("inputs together", variance);
-            self.without
-                .push("what each input makes: their ranks do not tell them apart".to_owned());
-            return;
-        };
-        let groups = rows.len().min(GROUPS);
-        let without = |group: usize| {
-            let kept: Vec<usize> = all.iter().copied().filter(|i| i % groups != group).collect();
-            pratt(&columns, values, &kept)
-        };
-        let jackknife: Option<Vec<Vec<f64>>> = (0..groups).map(without).collect();
-        for (index, input) in inputs.iter().enumerate() {
-            let between = jackknife.as_ref().map(|jackknife| {
-                let of: Vec<f64> = jackknife.iter().map(|parts| parts[index]).collect();
-                let g = groups as f64;
-                let half = Z * libm::sqrt(moments(&of).1 / g) * (g - 1.0);
-                [parts[index] - half, parts[index] + half].map(|end| variance * end.clamp(0.0, 1.0))
-            });
-            let part = variance * parts[index];
-            self.parts.push(Part { name: input.name.clone(), part, between });
-        }
-        self.add(UNEXPLAINED, variance * (1.0 - parts.iter().sum::<f64>()).max(0.0));
+/// The part of each input in the spread of the samples, and the rest: `values` of a measure, one at each row.
+///
+/// # Errors
+/// Why there are none.
+fn of_inputs(inputs: &[&Column], rows: &[usize], values: &[f64]) -> Result<Vec<Part>, String> {
+    let needed = SAMPLES_PER_INPUT * inputs.len().max(2);
+    if rows.len() < needed {
+        return Err(format!("what each input makes: {} samples, {needed} needed", rows.len()));
     }
+    let columns: Vec<Vec<f64>> = inputs.iter().map(|input| numbers(input, rows)).collect();
+    let all: Vec<usize> = (0..rows.len()).collect();
+    let parts = pratt(&columns, values, &all)
+        .ok_or("what each input makes: the ranks do not separate them")?;
+    let groups = rows.len().min(GROUPS);
+    let without = |group: usize| {
+        let kept: Vec<usize> = all.iter().copied().filter(|i| i % groups != group).collect();
+        pratt(&columns, values, &kept)
+    };
+    let jackknife: Option<Vec<Vec<f64>>> = (0..groups).map(without).collect();
+    let of_input = |(index, input): (usize, &&Column)| {
+        let between = jackknife.as_ref().map(|jackknife| {
+            let of: Vec<f64> = jackknife.iter().map(|parts| parts[index]).collect();
+            let g = groups as f64;
+            let half = Z * libm::sqrt(moments(&of).1 / g) * (g - 1.0);
+            [parts[index] - half, parts[index] + half].map(|end| end.clamp(0.0, 1.0))
+        });
+        Part { between, ..Part::new(&input.name, parts[index]) }
+    };
+    let mut found: Vec<Part> = inputs.iter().enumerate().map(of_input).collect();
+    found.push(Part::new(UNEXPLAINED, (1.0 - parts.iter().sum::<f64>()).max(0.0)));
+    Ok(found)
 }
 
 /// The values of an input as numbers; words by their order.
@@ -457,15 +455,16 @@ mod tests {
         let [point] = found.as_slice() else { panic!("{found:?}") };
         let spread = point.measures.iter().find(|one| one.measure == "peak_vz").unwrap();
         // Var = 9/12 + 1/12 + 0.01/12.
-        let part = |name: &str| spread.parts.iter().find(|part| part.name == name).unwrap();
+        let part = |name: &str| spread.inputs.iter().find(|part| part.name == name).unwrap();
         for (name, exact) in [("a", 0.899), ("b", 0.0999)] {
             let Part { part, between, .. } = part(name).clone();
             let [low, high] = between.unwrap();
             assert!((part - exact).abs() < 0.04, "{name}: {part}");
             assert!(low < part && part < high && high - low < 0.2, "{name}: {low} {high}");
         }
-        let sum: f64 = spread.parts.iter().map(|part| part.part).sum();
-        assert!((sum - 1.0).abs() < 1e-12);
+        for parts in [&spread.inputs, &spread.budget] {
+            assert!((parts.iter().map(|part| part.part).sum::<f64>() - 1.0).abs() < 1e-12);
+        }
         assert!((spread.deviation - libm::sqrt(10.01 / 12.0)).abs() < 0.05);
         assert_eq!(point.safe.of, 400);
         let exact = point.safe.met as f64 / 400.0;
@@ -528,7 +527,7 @@ mod tests {
         let (table, inputs) = (table(9), names(&["a", "b"]));
         let found = Tolerance::all(&table, &[], &inputs, &inputs);
         let spread = &found[0].measures.last().unwrap();
-        assert_eq!(spread.parts[0].name, "inputs together");
-        assert!(spread.without[0].contains("9 samples, 10 needed"), "{:?}", spread.without);
+        assert_eq!((spread.inputs.len(), spread.budget[0].name.as_str()), (0, "samples"));
+        assert!(spread.without[2].contains("9 samples, 10 needed"), "{:?}", spread.without);
     }
 }

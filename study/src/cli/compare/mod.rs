@@ -101,7 +101,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let base = self::base(&stored, by, base)?;
     let format = args.output.format();
     let zipped = |name: &str| stored.study.zipped_with(name);
-    let varied = stored.study.replicates();
+    let varied = stored.study.replicates_of_samples();
     let single = args.runs || varied.contains(&by.name);
     let replicates = if single { Vec::new() } else { varied.clone() };
     let rows = chosen_runs(&table, condition, &replicates)?;

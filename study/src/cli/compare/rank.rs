@@ -26,9 +26,9 @@ pub(super) fn run(
     table: &Table,
     out: &mut dyn Write,
 ) -> Result<()> {
-    let (study, replicates) = (&stored.study, stored.study.replicates());
+    let (study, replicates) = (&stored.study, stored.study.replicates_of_samples());
     let rows = rows(table, args.condition.as_deref(), &args.by, &replicates)?;
-    let by = parameters(table, &rows, &args.by, &replicates)?;
+    let by = parameters(table, &rows, &args.by, &study.replicates())?;
     let measures = measures(&args.measures, table, study)?;
     let input = RankingInput {
         table,

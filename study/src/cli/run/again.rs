@@ -85,7 +85,7 @@ fn refused(value: &str, problem: &str) -> Error {
         value,
         problem,
         allowed,
-        "billow status; billow table --columns job,status",
+        "billow status; billow table --runs --columns job,status",
     )
 }
 

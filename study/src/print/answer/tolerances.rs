@@ -3,14 +3,11 @@
 use std::fmt::Write as _;
 
 use super::parameters_text;
-use crate::analysis::answer::{Part, Quantile, Tolerance};
+use crate::analysis::answer::{MESH, Part, Quantile, Tolerance};
 use crate::input::units::DisplayUnit;
 use crate::input::value::brief_number;
 use crate::job::proportion::Proportion;
 use crate::print::{MAX_VALUES, count};
-
-/// Parts of a spread in a line, at most.
-const MAX_PARTS: usize = 6;
 
 /// For each point a line, then one for each measure.
 pub(super) fn lines(points: &[Tolerance]) -> Vec<String> {
@@ -42,25 +39,23 @@ fn of_point(point: &Tolerance) -> Vec<String> {
     let measures = point.measures.iter().map(|spread| {
         let quantiles: Vec<String> =
             spread.quantiles.iter().map(|one| quantile(one, &spread.shown)).collect();
-        let part = |part: &Part| {
-            let percent = |part: f64| format!("{:.0}", 100.0 * part);
-            let between = part.between.map_or_else(String::new, |[low, high]| {
-                format!(" ({} to {})", percent(low), percent(high))
-            });
-            format!("{} {} %{between}", part.name, percent(part.part))
-        };
-        let parts: Vec<String> = spread.parts.iter().take(MAX_PARTS).map(part).collect();
-        let without = match spread.without.as_slice() {
-            [] => String::new(),
-            all => format!("; {}", all.join("; ")),
-        };
-        format!(
-            "  {}: {}; spread {} (standard deviation), of which {}{without}",
-            spread.measure,
-            quantiles.join(", "),
-            spread.shown.of_difference().brief(spread.deviation),
-            parts.join(", ")
-        )
+        let mut text = format!("  {}: {} of the samples", spread.measure, quantiles.join(", "));
+        if !spread.inputs.is_empty() {
+            let _ = write!(text, "; their spread is made by {}", parts(&spread.inputs));
+        }
+        let deviation = spread.shown.of_difference().brief(spread.deviation);
+        let _ = write!(
+            text,
+            "; standard deviation with all uncertainty {deviation}: {}",
+            parts(&spread.budget)
+        );
+        if spread.budget.first().is_some_and(|largest| largest.name == MESH) {
+            text.push_str(" (a finer mesh narrows it, more samples do not)");
+        }
+        for reason in &spread.without {
+            let _ = write!(text, "; {reason}");
+        }
+        text
     });
     let measures: Vec<String> = measures.collect();
     [vec![text], measures].concat()
@@ -88,6 +83,18 @@ pub(super) fn probability(point: &Tolerance) -> String {
     }
     text.push(')');
     text
+}
+
+/// "thickness 63 % (45 to 81), friction 2 % (0 to 6)".
+fn parts(parts: &[Part]) -> String {
+    let percent = |part: f64| format!("{:.0}", 100.0 * part);
+    let text = |part: &Part| {
+        let between = part.between.map_or_else(String::new, |[low, high]| {
+            format!(" ({} to {})", percent(low), percent(high))
+        });
+        format!("{} {} %{between}", part.name, percent(part.part))
+    };
+    parts.iter().map(text).collect::<Vec<_>>().join(", ")
 }
 
 /// "95 % below 24.1 m/s (22.8 to 27)".

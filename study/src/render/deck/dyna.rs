@@ -63,6 +63,13 @@ pub fn keyword_file(deck: &Deck<'_>) -> String {
     for line in deck.differences() {
         let _ = writeln!(text, "$ {line}");
     }
+    let _ = writeln!(
+        text,
+        "$ Damping of the fabric {}, as in the job: a law that cuts compression may gain energy without more.\n\
+         $ Time step, mass scaling, contact stiffness and the control of shells are those of the code.\n\
+         $ Written from the manual; billow was not run beside LS-DYNA.",
+        deck.film.film.numerical_damping
+    );
     let _ = writeln!(text, "*TITLE\n{:.80}", deck.title);
     control(&mut text, deck);
     film(&mut text, deck);

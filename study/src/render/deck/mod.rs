@@ -205,10 +205,7 @@ impl<'a> Deck<'a> {
             format!(
                 "Time 0 is {release_time} s of the job, when the lid releases the capsule; base and lid are left out."
             ),
-            format!(
-                "Compression: the law of fabric keeps a part of the stiffness, at least a thousandth, or none; billow keeps {}.",
-                film.compression
-            ),
+            format!("Compression fraction of the job: {}.", film.compression),
         ];
         let (mass, temperature) = (self.beyond_ambient(), self.gas[1]);
         if mass > 0.0 {

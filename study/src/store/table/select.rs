@@ -106,7 +106,7 @@ pub fn jobs(table: &Table, prefixes: &[String]) -> Result<Vec<usize>> {
                 } else {
                     format!("{several} job ids start with this")
                 };
-                let hint = "billow table --columns job,status lists them";
+                let hint = "billow table --runs --columns job,status lists them";
                 let allowed = nearest_ids(&ids, prefix);
                 return Err(Error::invalid_option("--jobs", prefix, problem, allowed, hint));
             }

@@ -24,6 +24,8 @@ use sequence::Method;
 const KEYS: [&str; 5] = ["number", "of", "method", "seed", "correlations"];
 /// Smallest part of a distribution between the ends that cut it.
 const MIN_REST: f64 = 1e-6;
+/// Smallest standard deviation over the mean. Chosen: a smaller one is a unit that was forgotten.
+const MIN_SPREAD: f64 = 1e-5;
 /// The distributions of numbers.
 const KINDS: [&str; 5] = ["uniform", "log_uniform", "normal", "log_normal", "triangular"];
 /// What the section must look like, for errors.
@@ -197,7 +199,12 @@ fn whole(
         }
         other => {
             let allowed = format!("a whole number, {least} to {most}");
-            Err(source.error(&format!("{SAMPLES}.{key}"), other, "is not such a number", allowed))
+            Err(source.error(
+                &format!("{SAMPLES}.{key}"),
+                other,
+                "is not a whole number in this range",
+                allowed,
+            ))
         }
     }
 }
@@ -256,10 +263,10 @@ fn read(key: &Key, json: &Json, path: &str, source: &Source) -> Result<Distribut
             let mean = number(0)?;
             let deviation =
                 relative(&items[1]).map(|part| part * mean.abs()).or_else(|| width(key, &items[1]));
-            let deviation = deviation.filter(|deviation| *deviation > 0.0);
+            let deviation = deviation.filter(|deviation| *deviation > MIN_SPREAD * mean.abs());
             let refused = || {
                 refuse(
-                    "has no standard deviation above 0, in the unit of the key or in per cent of the mean",
+                    "has hardly any standard deviation; it is in the unit of the key, or in per cent of the mean",
                 )
             };
             Distribution::Normal([mean, deviation.ok_or_else(refused)?])
