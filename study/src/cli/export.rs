@@ -16,6 +16,7 @@ use crate::input::value::Value;
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error, write_output};
+use crate::platform::quote;
 use crate::print::print_rows;
 use crate::render::deck::{self, Deck};
 use crate::store::cube::{self, Written};
@@ -111,6 +112,10 @@ fn decks(args: &Args, of: &[String], out: &mut dyn Write) -> Result<()> {
     let root = folder_of_job(job, &study(args, args.study.as_ref()))?;
     let stored = results::read(&root)?;
     let id = stored.job(job)?;
+    if stored.point(&id).is_none() {
+        let (id, root) = (id.short(), quote::path(&root));
+        eprintln!("note: job {id} is of an earlier run of {root}, not of its study as it ran last");
+    }
     let files = written(&stored, &id, code, path)?;
     let ends_in_k = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("k"));
     if code == Code::Dyna && !ends_in_k {

@@ -8,7 +8,7 @@ use super::table;
 use crate::analysis::compare::canonical;
 use crate::input::value::Value;
 use crate::job::result_limit::ResultLimit;
-use crate::job::row::ColumnId;
+use crate::job::row::{ColumnId, DerivedColumn};
 use crate::store::table::{Column, Table};
 
 /// What the run before had.
@@ -64,8 +64,10 @@ impl Before {
             matched.iter().filter(other).count()
         };
         let outcomes = [ColumnId::Status, ColumnId::Verdict].map(|id| id.column().name);
+        let outcomes = outcomes.into_iter().chain([DerivedColumn::Safety.name()]);
+        let known = outcomes.filter(|name| self.table.column(name).is_some());
         let changed: Vec<String> =
-            outcomes.iter().map(|name| format!("another {name} at {}", differ(name))).collect();
+            known.map(|name| format!("another {name} at {}", differ(name))).collect();
         vec![
             match self.changes.as_slice() {
                 [] => "this run is written in another form".to_owned(),

@@ -74,6 +74,10 @@ impl<'a> Deck<'a> {
         if !shell.is_closed() || !shell.closure.is_empty() {
             return Err("its film is open; allowed: film that encloses its volume".to_owned());
         }
+        if self.duration() <= 0.0 {
+            let problem = "it ends before the lid releases the capsule";
+            return Err(format!("{problem}; allowed: solver.end_time after the release"));
+        }
         if self.gas[0] < (1.0 - MAX_MISSING) * self.ambient_mass() {
             let problem = "it starts with less gas than ambient gas in its volume";
             return Err(format!("{problem}; allowed: residual gas \"ambient\", or more"));
