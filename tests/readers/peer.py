@@ -2,7 +2,7 @@
 
     peer.py BILLOW PROGRAMS PICTURE JOB RESULTS [JOB RESULTS ...]
 
-PROGRAMS is the folder of starter_linux64_gf and engine_linux64_gf, which find their ours files by RAD_CFG_PATH and LD_LIBRARY_PATH. This is
+PROGRAMS is the folder of starter_linux64_gf and engine_linux64_gf, which find their files by RAD_CFG_PATH and LD_LIBRARY_PATH. This is
 no test: the programs are large, and come from elsewhere. It prints a table for each job and draws one row of curves for each.
 """
 
@@ -36,11 +36,11 @@ def records(path):
         at += length + 8
 
 
-def histories(path, deck, name):
+def histories(path, deck):
     """Time, height of the followed ring, volume and pressure, of every time: time, totals, parts, nodes, control volume."""
     found = list(records(path))
     steps = []
-    while len(found) >= 5 and [len(record) for record in found[-5::2]] == [4, len(found[-3]), 36]:
+    while len(found) >= 5 and (len(found[-5]), len(found[-1])) == (4, 36):
         *found, when, _, _, nodes, volume = found
         steps.append([np.frombuffer(record, ">f4").astype(float) for record in (when, nodes, volume)])
     steps.reverse()
@@ -74,7 +74,7 @@ def both(billow, programs, job, results):
     seconds([f"{programs}/starter_linux64_gf", "-i", starter.name, "-np", "1", "-nt", "1"], folder)
     spent = seconds([f"{programs}/engine_linux64_gf", "-i", engine.name, "-nt", "1"], folder)
     name = starter.name.removesuffix("_0000.rad")
-    peer = histories(folder / f"{name}T01", Radioss(starter), name)
+    peer = histories(folder / f"{name}T01", Radioss(starter))
     with h5py.File(next(Path(results).glob(f"jobs/*/{job}*.h5"))) as file:
         ours = {column: file[f"history/{column}"][:] for column in ("time", *NAMES)}
     ours["time"] -= ours["time"][-1] - peer["time"][-1]

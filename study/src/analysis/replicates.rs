@@ -249,24 +249,35 @@ pub fn is_mesh(name: &str, meshes: &Meshes) -> bool {
     !meshes.list.is_empty() && name == MESH_PARAMETER
 }
 
-/// The rows of each point, one row per job, in the order of their first rows.
-fn groups(table: &Table, rows: &[usize], replicates: &[String]) -> Vec<Vec<usize>> {
+/// The rows of each point, in the order of their first rows.
+pub fn rows_of_points(table: &Table, rows: &[usize], replicates: &[String]) -> Vec<Vec<usize>> {
     let fixed = fixed(table, replicates);
-    let job = table.column("job");
     let mut positions: BTreeMap<Vec<String>, usize> = BTreeMap::new();
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for row in rows {
-        let key = point_key(&fixed, *row);
-        let position = *positions.entry(key).or_insert(groups.len());
+        let position = *positions.entry(point_key(&fixed, *row)).or_insert(groups.len());
         if position == groups.len() {
             groups.push(Vec::new());
         }
-        let same = |known: &usize| job.is_some_and(|job| job.cells[*known] == job.cells[*row]);
-        if !groups[position].iter().any(same) {
-            groups[position].push(*row);
-        }
+        groups[position].push(*row);
     }
     groups
+}
+
+/// The same with one row per job.
+fn groups(table: &Table, rows: &[usize], replicates: &[String]) -> Vec<Vec<usize>> {
+    let job = table.column("job");
+    let of_jobs = |rows: Vec<usize>| {
+        let mut kept: Vec<usize> = Vec::new();
+        for row in rows {
+            let same = |known: &usize| job.is_some_and(|job| job.cells[*known] == job.cells[row]);
+            if !kept.iter().any(same) {
+                kept.push(row);
+            }
+        }
+        kept
+    };
+    rows_of_points(table, rows, replicates).into_iter().map(of_jobs).collect()
 }
 
 fn condensed(table: &Table, runs: &[Runs], replicates: &[String], statistic: Statistic) -> Table {

@@ -9,7 +9,7 @@ use std::fmt;
 use serde::Serialize;
 
 /// 97.5 % point of the normal distribution: a two-sided interval of 95 %.
-const Z: f64 = 1.959_963_984_540_054;
+pub const Z: f64 = 1.959_963_984_540_054;
 
 /// k of n.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]

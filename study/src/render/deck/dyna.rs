@@ -45,15 +45,10 @@ fn set(
     }
 }
 
-fn curve(text: &mut String, number: usize, title: &str, points: &[[f64; 2]]) {
-    let _ = writeln!(text, "*DEFINE_CURVE_TITLE\n{title}\n{number:>10}{:>10}", 0);
-    for point in points {
-        let _ = writeln!(
-            text,
-            "{:>20}{:>20}",
-            super::number(point[0], 19),
-            super::number(point[1], 19)
-        );
+fn curve(text: &mut String, id: usize, title: &str, points: &[[f64; 2]]) {
+    let _ = writeln!(text, "*DEFINE_CURVE_TITLE\n{title}\n{id:>10}{:>10}", 0);
+    for [x, y] in points {
+        let _ = writeln!(text, "{:>20}{:>20}", number(*x, 19), number(*y, 19));
     }
 }
 
@@ -93,7 +88,7 @@ fn control(text: &mut String, deck: &Deck<'_>) {
         card(text, &[interval]);
     }
     text.push_str("*DATABASE_BINARY_D3PLOT\n");
-    card(text, &[end / f64::from(deck.film.outputs.frames.max(1))]);
+    card(text, &[deck.frame_interval()]);
     if !deck.followed.is_empty() {
         text.push_str("*DATABASE_HISTORY_NODE\n");
         let nodes: Vec<usize> = deck.followed.iter().map(|node| *node as usize + 1).collect();
@@ -106,7 +101,7 @@ fn control(text: &mut String, deck: &Deck<'_>) {
 fn film(text: &mut String, deck: &Deck<'_>) {
     let film = &deck.film.film;
     let (stiffness, ratio) = (film.youngs_modulus, film.poisson_ratio);
-    let shear = stiffness / (2.0 * (1.0 + ratio));
+    let shear = deck.shear_modulus();
     let no_compression = if film.compression < KEEPS_COMPRESSION { 1.0 } else { 0.0 };
     text.push_str("*MAT_FABRIC_TITLE\nfilm\n");
     card(text, &[1.0, film.density, stiffness, stiffness, 0.0, ratio]);
@@ -150,7 +145,7 @@ fn elements(text: &mut String, deck: &Deck<'_>) {
             line(text, element, part, nodes);
         }
     }
-    set(text, "SET_PART_LIST", "film", 1, deck.parts().into_iter().map(|(part, _)| part as usize));
+    set(text, "SET_PART_LIST", "film", 1, deck.part_numbers());
 }
 
 fn supports(text: &mut String, deck: &Deck<'_>) {
@@ -179,11 +174,9 @@ fn supports(text: &mut String, deck: &Deck<'_>) {
 /// The control volume with its inflow and leak.
 fn gas(text: &mut String, deck: &Deck<'_>) {
     let (supply, inflows) = (deck.supply(), deck.inflows());
-    let species = supply.species;
-    let mass = MOLAR_GAS_CONSTANT / species.gas_constant;
-    let cp = species.cp + species.vibration_heat_capacity(deck.film.film.temperature);
+    let [mass, cp] = deck.molar_mass_and_cp();
     let (pressure, temperature) = (supply.ambient_pressure.max(VACUUM), deck.film.film.temperature);
-    let density = pressure / (species.gas_constant * temperature);
+    let density = pressure / (supply.species.gas_constant * temperature);
     for (index, inflow) in inflows.iter().enumerate() {
         let title = format!("inflow {}, kg/s", index + 1);
         curve(text, FIRST_CURVE + index, &title, &rate(&inflow.mass));

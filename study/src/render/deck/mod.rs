@@ -114,6 +114,29 @@ impl<'a> Deck<'a> {
         self.film.solver.end_time - self.film.release_time
     }
 
+    /// Time between two stored shapes, s.
+    fn frame_interval(&self) -> f64 {
+        self.duration() / f64::from(self.film.outputs.frames.max(1))
+    }
+
+    /// Shear modulus of the film, Pa.
+    fn shear_modulus(&self) -> f64 {
+        let film = &self.film.film;
+        film.youngs_modulus / (2.0 * (1.0 + film.poisson_ratio))
+    }
+
+    /// Molar mass of the gas, kg/mol, and its specific heat cp at film temperature, J/(kg K).
+    fn molar_mass_and_cp(&self) -> [f64; 2] {
+        let species = self.supply().species;
+        let vibrations = species.vibration_heat_capacity(self.film.film.temperature);
+        [MOLAR_GAS_CONSTANT / species.gas_constant, species.cp + vibrations]
+    }
+
+    /// Numbers of the parts.
+    fn part_numbers(&self) -> impl Iterator<Item = usize> {
+        self.parts().into_iter().map(|(part, _)| part as usize)
+    }
+
     /// Node number in the deck of the reference of a corner of an element; nodes of film are numbered from 1.
     fn reference_node(&self, element: usize, corner: usize) -> usize {
         self.film.shell.positions.len() + 3 * element + corner + 1

@@ -5,7 +5,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Deck, MOLAR_GAS_CONSTANT, VACUUM, wide};
+use super::{Deck, VACUUM, wide};
 
 /// Version of the input format.
 const FORMAT: u32 = 2024;
@@ -62,7 +62,7 @@ pub fn starter_file(deck: &Deck<'_>) -> String {
 fn film(text: &mut String, deck: &Deck<'_>) {
     let film = &deck.film.film;
     let (stiffness, ratio) = (film.youngs_modulus, film.poisson_ratio);
-    let shear = stiffness / (2.0 * (1.0 + ratio));
+    let shear = deck.shear_modulus();
     let compression = film.compression.max(MIN_COMPRESSION);
     let damping = damping(deck);
     let _ = write!(
@@ -118,7 +118,7 @@ fn elements(text: &mut String, deck: &Deck<'_>) {
         }
     }
     text.push_str("/SURF/PART/1\nfilm\n");
-    node_lines(text, deck.parts().iter().map(|(part, _)| *part as usize));
+    node_lines(text, deck.part_numbers());
     text.push_str("/GRNOD/NODE/1\nfilm\n");
     node_lines(text, 1..=deck.film.shell.positions.len());
 }
@@ -131,14 +131,19 @@ fn supports(text: &mut String, deck: &Deck<'_>) {
         let [x, y, z] = support.directions.map(u8::from);
         let _ = writeln!(text, "/BCS/{number}\n{name}\n   {x}{y}{z} 000{:>10}{number:>10}", 0);
     }
-    for (axis, acceleration) in ["X", "Y", "Z"].iter().zip(deck.film.gravity.iter()) {
+    for (index, (axis, acceleration)) in ["X", "Y", "Z"].iter().zip(&deck.film.gravity).enumerate()
+    {
         if acceleration.abs() > 0.0 {
             let scale = wide(&[1.0, *acceleration]);
-            let number = format!("/GRAV/{}\ngravity\n", 1);
             let _ = writeln!(
                 text,
-                "{number}{:>10}{axis:>10}{:>10}{:>10}{:>10}{:>10}{scale}",
-                1, 0, 0, 1, 0
+                "/GRAV/{}\ngravity\n{:>10}{axis:>10}{:>10}{:>10}{:>10}{:>10}{scale}",
+                index + 1,
+                1,
+                0,
+                0,
+                1,
+                0
             );
         }
     }
@@ -149,9 +154,7 @@ fn supports(text: &mut String, deck: &Deck<'_>) {
 /// The control volume with its inflow and leak.
 fn gas(text: &mut String, deck: &Deck<'_>) {
     let supply = deck.supply();
-    let (species, inflows) = (supply.species, deck.inflows());
-    let cp = species.cp + species.vibration_heat_capacity(deck.film.film.temperature);
-    let mass = MOLAR_GAS_CONSTANT / species.gas_constant;
+    let (inflows, [mass, cp]) = (deck.inflows(), deck.molar_mass_and_cp());
     let _ = writeln!(
         text,
         "/MAT/GAS/MASS/2\ngas\n{}\n{}\n{}",
@@ -251,7 +254,7 @@ fn contact(text: &mut String, deck: &Deck<'_>) {
 
 fn outputs(text: &mut String, deck: &Deck<'_>) {
     text.push_str("/TH/MONV/1\ngas\nDEF       \n         1\n/TH/PART/2\nfilm\nDEF       \n");
-    node_lines(text, deck.parts().iter().map(|(part, _)| *part as usize));
+    node_lines(text, deck.part_numbers());
     if deck.followed.is_empty() {
         return;
     }
@@ -264,7 +267,7 @@ fn outputs(text: &mut String, deck: &Deck<'_>) {
 /// The input of the engine.
 pub fn engine_file(deck: &Deck<'_>) -> String {
     let (end, interval) = (deck.duration(), deck.film.outputs.sample_interval);
-    let frame = end / f64::from(deck.film.outputs.frames.max(1));
+    let frame = deck.frame_interval();
     format!(
         "/RUN/{}/1\n{end:e}\n/VERS/{FORMAT}\n/TFILE/4\n{interval:e}\n/PRINT/-1000\n/MON/ON\n/ANIM/DT\n0 {frame:e}\n/ANIM/VECT/VEL\n\
          /ANIM/SHELL/TENS/STRESS/MEMB\n",

@@ -128,7 +128,8 @@ impl Results<'_> {
     }
 
     /// Writes study.json and returns its text. An equal file is not written again. The file of another form of the
-    /// study becomes previous.json. A damaged file is kept in the folder `damaged`. `study` is the file of the study, an object; `journal` is that of the folder.
+    /// study becomes previous.json. A damaged file is kept in the folder `damaged`. `study` is the file of the study, an
+    /// object; `journal` is that of the folder.
     ///
     /// # Errors
     /// [`Error::Disk`] when the folder belongs to another study, or to a program with another version of the file.
