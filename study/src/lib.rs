@@ -23,6 +23,7 @@
 //! | [`store`] | what a study stores on disk |
 //! | [`study`] | a study: axes, points, jobs |
 //! | [`scene`] | one scene without a study: its file, its run, its summary |
+//! | [`surrogate`] | Gaussian process regression: what a measure is between the points that ran |
 //! | [`accuracy`] | what is known about the error of a result |
 //! | [`job`] | one job: its id, its row |
 //! | [`input`] | keys, units, expressions, the JSON of a file |
@@ -51,3 +52,4 @@ pub mod run;
 pub mod scene;
 pub mod store;
 pub mod study;
+pub mod surrogate;

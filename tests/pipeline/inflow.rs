@@ -49,7 +49,12 @@ fn a_strategy_lets_gas_in_by_a_table_from_a_tank_and_as_standard_litres() {
         "closed": {"inflow": [
             {"from": 0, "to": "10 ms", "mass": "1 g", "tank_pressure": "50 bar", "orifice_area": "2 mm2"}
         ]},
-        "litres": {"inflow": [{"from": 0, "to": "0.2 s", "mass_flow_rate": "240 SLPM"}]}
+        "litres": {"inflow": [{"from": 0, "to": "0.2 s", "mass_flow_rate": "240 SLPM"}]},
+        "ramp": {"inflow": [{"from": "0.1 s", "to": "0.3 s", "mass_flow_rate": "1 g/s", "end_mass_flow_rate": "9 g/s"}]},
+        "ramp_of_mass": {"inflow": [{"mass": "1.2 g", "mass_flow_rate": "2 g/s", "end_mass_flow_rate": "10 g/s"}]},
+        "steps": {"release_time": "0.1 s", "inflow": [
+            {"mass": "0.3 g", "mass_flow_rate": "3 g/s"}, {"mass": "0.9 g", "mass_flow_rate": "9 g/s"}, {"to": "0.4 s"}
+        ]}
     })));
     fs::write(folder.path().join("flow.csv"), "time (ms);flow (g/s)\n0;0\n100;10\n200;0\n")
         .unwrap();
@@ -74,6 +79,10 @@ fn a_strategy_lets_gas_in_by_a_table_from_a_tank_and_as_standard_litres() {
     // It closes within a window of constant rate.
     assert!((1e3 * of("closed") / blown(0.01) - 1.0).abs() < 5e-3, "{}", of("closed"));
     near("litres", 0.2 * 4.0 * 1.2498);
+    near("ramp", 1.0);
+    near("ramp_of_mass", 1.2);
+    // Each step begins where the one before ends: at 0.1, 0.2 and 0.3 s, the last with 1 g/s.
+    near("steps", 0.3 + 0.9 + 0.1);
     // The results folder has the points of the file.
     let jobs = folder.stdout(&["plan", "grid.json"]);
     fs::remove_file(folder.path().join("flow.csv")).unwrap();
@@ -104,6 +113,14 @@ fn a_table_and_a_tank_that_say_too_much_or_too_little_are_refused() {
         folder.refuses(&["plan", "grid.json"], text);
     };
     let table = json!([[0, 0], [1, 1e-3]]);
+    refused(
+        json!({"from": 0, "table": table, "end_mass_flow_rate": "1 g/s"}),
+        "is given beside end_mass_flow_rate",
+    );
+    refused(
+        json!({"from": 0, "mass": "1 g", "tank_pressure": "50 bar", "orifice_area": "2 mm2", "end_mass_flow_rate": 1e-3}),
+        "is given beside a tank",
+    );
     refused(json!({"from": 0, "table": table, "mass": "1 g"}), "is given beside mass");
     refused(json!({"from": 0, "table": [[0, 0]]}), "inflow[0].table");
     refused(json!({"from": 0, "table": "no.csv"}), "no.csv");

@@ -19,6 +19,7 @@ mod mesh_study;
 mod monitor_and_blind_contact;
 #[path = "../torture/mutate.rs"]
 mod mutate;
+mod optimise;
 mod plan;
 #[path = "../torture/random.rs"]
 #[expect(dead_code, reason = "the other numbers are for `make torture`")]

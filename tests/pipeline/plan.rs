@@ -274,6 +274,7 @@ fn a_generation_depends_only_on_the_finished_rows() {
             status: Status::Done,
             verdict: None,
             limits: Vec::new(),
+            minimised: vec![],
         })
         .collect();
     assert_eq!(next_jobs(&study, &finished[..2]), Some(all.clone()));

@@ -34,7 +34,7 @@ const ROOMS: [(&str, &[&str]); 3] = [
     (
         "study",
         &[
-            "platform", "input", "job", "accuracy", "scene", "study", "store", "run", "cluster",
+            "platform", "input", "surrogate", "job", "accuracy", "scene", "study", "store", "run", "cluster",
             "analysis", "print", "render", "chart", "report", "cli",
         ],
     ),

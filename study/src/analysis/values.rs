@@ -21,11 +21,7 @@ pub fn measured(table: &Table, measure: &Column, row: usize) -> Option<f64> {
     if table.status(row) != Some(Status::Done) {
         return None;
     }
-    match measure.cells[row] {
-        Value::Number(number) if !number.is_nan() => Some(number),
-        Value::Integer(number) => Some(number as f64),
-        _ => None,
-    }
+    measure.cells[row].any_number().filter(|number| !number.is_nan())
 }
 
 /// The columns with the mesh error of a measure, below and above its value.

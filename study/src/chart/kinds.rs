@@ -7,7 +7,7 @@ use super::history::{MAX_JOBS, has_history};
 use super::map::{Judged, MAX_VALUES};
 use super::parameters::{self, Parameter, STRATEGY};
 use super::tornado::{self, OneFactor};
-use super::{Source, borders, history, invalid_option, map, number, over};
+use super::{Source, borders, history, importance, invalid_option, map, number, over, search};
 use crate::analysis::compare::{canonical, values};
 use crate::input::value::Value;
 use crate::job::JobId;
@@ -32,6 +32,10 @@ pub enum ChartKind {
     History(Vec<String>),
     /// A measure over a parameter; the parameters that give the lines.
     Over(String, String, Vec<String>),
+    /// Which input makes the spread of a measure.
+    Importance(String),
+    /// How the search of an optimum went on.
+    Search,
     /// How much each factor changes a measure, of points that vary one factor at a time.
     Tornado(String),
     /// A measure over two parameters; `safe` and `verdict` are proportions of runs.
@@ -41,8 +45,8 @@ pub enum ChartKind {
 }
 
 impl ChartKind {
-    /// The map of a measure over two parameters. Without them a proportion of runs is over the first two, any other
-    /// measure is a tornado.
+    /// The map of a measure over two parameters. Without them a proportion of runs is over the first two; any other
+    /// measure is what its study asks of it: the search of an optimum, what makes its spread, a tornado.
     ///
     /// # Errors
     /// A study with fewer than two parameters that vary.
@@ -51,7 +55,15 @@ impl ChartKind {
             return Ok(Self::Map(measure, axes));
         }
         if Judged::of_name(&measure).is_none() {
-            return Ok(Self::Tornado(measure));
+            let answer = source.answer;
+            let searched = answer.and_then(|answer| answer.optimum.as_ref());
+            if searched.is_some_and(|found| found.minimise.contains(&measure)) {
+                return Ok(Self::Search);
+            }
+            let has_parts =
+                answer.is_some_and(|answer| !importance::of_measure(answer, &measure).is_empty());
+            let kind = if has_parts { Self::Importance } else { Self::Tornado };
+            return Ok(kind(measure));
         }
         let axes = outcome_axes(source).ok_or_else(|| {
             let problem = "a map needs two parameters that vary";
@@ -70,6 +82,8 @@ impl ChartKind {
         let name = match self {
             Self::History(columns) => format!("history-{}", columns.join("-")),
             Self::Over(measure, over, lines) => format!("{measure}-over-{over}{}", by(lines)),
+            Self::Importance(measure) => format!("{measure}-importance"),
+            Self::Search => "search".to_owned(),
             Self::Tornado(measure) => format!("{measure}-tornado"),
             Self::Map(measure, [x, y]) => format!("{measure}-map-{x}-{y}"),
             Self::Borders(over, lines) => {
@@ -93,6 +107,8 @@ impl ChartKind {
         match self {
             Self::History(columns) => history::svg(source, columns, range, read),
             Self::Over(measure, parameter, by) => over::svg(source, measure, parameter, by),
+            Self::Importance(measure) => importance::svg(source, measure),
+            Self::Search => search::svg(source),
             Self::Tornado(measure) => tornado::svg(source, measure),
             Self::Map(measure, [x, y]) => map::svg(source, measure, [x, y]),
             Self::Borders(over, by) => borders::svg(source, over.as_deref(), by),
@@ -107,7 +123,7 @@ impl ChartKind {
             Self::Over(_, over, _) => middle(source, &[over]),
             Self::Map(_, [x, y]) => middle(source, &[x, y]),
             // The searches are chosen, not their values; a tornado has every point.
-            Self::Borders(..) | Self::Tornado(_) => None,
+            Self::Borders(..) | Self::Tornado(_) | Self::Importance(_) | Self::Search => None,
         }
     }
 }
@@ -125,6 +141,9 @@ pub fn standard<'a>(source: &Source<'a>) -> (Vec<(ChartKind, Source<'a>)>, Vec<S
     let axes = axes(source);
     let judged = Judged::of(source);
     let one_factor = source.search.is_none() && OneFactor::of(source, 2).is_some();
+    if source.answer.is_some_and(|answer| answer.optimum.is_some()) {
+        return (vec![(ChartKind::Search, source.clone())], notes);
+    }
     // First the answer: the borders, or the map of outcomes.
     if source.search.is_some() {
         kinds.push(ChartKind::Borders(None, Vec::new()));
@@ -169,6 +188,9 @@ pub fn standard<'a>(source: &Source<'a>) -> (Vec<(ChartKind, Source<'a>)>, Vec<S
         && let ([x, y, ..], Some(measure)) = (axes.as_slice(), measured.first())
     {
         kinds.push(ChartKind::Map(measure.clone(), [x.clone(), y.clone()]));
+    }
+    if let Some(answer) = source.answer.filter(|_| !one_factor) {
+        kinds.extend(importance::measures(answer).into_iter().map(ChartKind::Importance));
     }
     let mut charts: Vec<(ChartKind, Source<'a>)> =
         kinds.into_iter().map(|kind| (kind, source.clone())).collect();

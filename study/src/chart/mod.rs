@@ -6,6 +6,7 @@
 //! is an axis, gives lines, gives panels, or has one value. The runs that repeat a point (replicates) are its
 //! median and range ([`runs`]).
 
+use crate::analysis::answer::Answer;
 use crate::input::keys;
 use crate::input::value::Value;
 use crate::job::result_limit::ResultLimit;
@@ -22,6 +23,7 @@ use self::runs::Replicated;
 pub mod borders;
 mod encoding;
 pub mod history;
+mod importance;
 pub mod kinds;
 mod limits;
 pub mod map;
@@ -31,6 +33,7 @@ pub mod over;
 pub mod parameters;
 mod positions;
 pub mod runs;
+mod search;
 mod time_axis;
 mod tornado;
 pub mod work_precision;
@@ -54,6 +57,8 @@ pub struct Source<'a> {
     pub runs: Option<Replicated<'a>>,
     /// The search of the study.
     pub search: Option<Searched<'a>>,
+    /// Its answer, where that says what makes the spread of a measure, or has an optimum.
+    pub answer: Option<&'a Answer>,
 }
 
 impl<'a> Source<'a> {
@@ -140,11 +145,7 @@ fn invalid_option(
 
 /// A cell as a finite number.
 fn number(value: &Value) -> Option<f64> {
-    match value {
-        Value::Integer(value) => Some(*value as f64),
-        Value::Number(value) if value.is_finite() => Some(*value),
-        _ => None,
-    }
+    value.any_number().filter(|number| number.is_finite())
 }
 
 #[cfg(test)]

@@ -87,6 +87,7 @@ fn source(table: &Table) -> Source<'_> {
         limits: &[],
         runs: None,
         search: None,
+        answer: None,
     }
 }
 

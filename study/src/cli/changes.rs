@@ -29,8 +29,10 @@ pub fn other_limits(of: &Stored<'_>, study: Study, path: &Path) -> Result<Option
             [] => "none".to_owned(),
             limits => limits.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
         };
+        let continues = || format!("; `billow run {}` continues the search", path.display());
         let next = match study.searched() {
-            Some(_) => format!("; `billow run {}` continues the search", path.display()),
+            Some(_) => continues(),
+            None if study.budget().is_some() => continues(),
             None if study.meshes().of_pilots => {
                 format!("; `billow run {}` runs the pilots that these limits need", path.display())
             }

@@ -90,7 +90,7 @@ pub(super) fn write(
     is_running: bool,
     path: &Path,
 ) -> Result<Vec<String>> {
-    let charts = chart::of_answer(stored, table)?;
+    let charts = chart::of_answer((stored, table, answer))?;
     let before = before(stored, table);
     let (page, notes) =
         Report { stored, table, answer, charts, before, size, is_running }.html()?;

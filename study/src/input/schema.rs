@@ -9,7 +9,8 @@ use serde_json::{Map, Value as Json, json};
 
 use crate::input::keys::listing::{FileKind, Parts};
 use crate::input::keys::{
-    self, Default, FORMULAS, GRAVITY, KEYS, Key, KeyKind, NEAR, Quantity, RANGE_KEYS, SEARCH_KEYS,
+    self, Default, FORMULAS, GRAVITY, KEYS, Key, KeyKind, NEAR, OPTIMISE_KEYS, Quantity,
+    RANGE_KEYS, SEARCH_KEYS,
 };
 use crate::input::units::Dimension;
 use crate::input::value::{Value, json_value};
@@ -150,6 +151,7 @@ fn form(path: &str) -> Json {
             grid
         }
         "samples" => samples(),
+        "optimise" => optimise(),
         "replicates" => {
             let mut replicates = axes();
             let count = json!({"type": "integer", "minimum": 1});
@@ -207,9 +209,27 @@ fn samples() -> Json {
     })
 }
 
+/// Measures, ranges of keys, a budget.
+fn optimise() -> Json {
+    let known = OPTIMISE_KEYS.iter().map(|key| (key.path.to_owned(), property(key)));
+    let mut properties: Map<_, _> = known.collect();
+    let measure = json!({"type": "string"});
+    let two = json!({"type": "array", "items": measure, "minItems": 1, "maxItems": 2});
+    properties.insert("minimise".to_owned(), json!({"oneOf": [measure, two]}));
+    properties.insert("over".to_owned(), of_keys(&json!({"type": "array", "minItems": 2})));
+    json!({
+        "type": "object", "required": ["minimise", "over", "budget"], "additionalProperties": false,
+        "properties": properties,
+    })
+}
+
 /// Axes by the names of their keys.
 fn axes() -> Json {
-    let axis = json!({"$ref": "#/$defs/axis"});
+    of_keys(&json!({"$ref": "#/$defs/axis"}))
+}
+
+/// An object of the keys that a study can vary.
+fn of_keys(axis: &Json) -> Json {
     let varied = KEYS.iter().enumerate().filter(|(_, key)| key.varies());
     let names = varied.flat_map(|(index, key)| [keys::short_name(index), key.path]);
     let properties: Map<_, _> = names.map(|name| (name.to_owned(), axis.clone())).collect();

@@ -40,6 +40,14 @@ impl Value {
         }
     }
 
+    /// The number it holds, also a whole one.
+    pub fn any_number(&self) -> Option<f64> {
+        match self {
+            Self::Integer(number) => Some(*number as f64),
+            other => other.number(),
+        }
+    }
+
     /// Its text for a reader: a number has six significant digits.
     pub fn short(&self) -> String {
         match self {

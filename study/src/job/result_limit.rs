@@ -239,11 +239,7 @@ impl AllJudged {
 
 /// The number of a cell.
 fn number(value: &Value) -> Option<f64> {
-    match value {
-        Value::Number(number) if !number.is_nan() => Some(*number),
-        Value::Integer(number) => Some(*number as f64),
-        _ => None,
-    }
+    value.any_number().filter(|number| !number.is_nan())
 }
 
 #[cfg(test)]

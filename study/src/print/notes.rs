@@ -182,7 +182,8 @@ fn without_error(study: &Study) -> Option<String> {
     if meshes.of_pilots {
         let meshes = meshes_text(&meshes.list);
         return Some(format!(
-            "{known}; pilots give one: in the end the points nearest to a limit run on n {meshes}"
+            "{known}; pilots give one: in the end {} run on n {meshes}",
+            study.pilots_are()
         ));
     }
     let limits = match study.result_limits() {

@@ -29,7 +29,7 @@ use crate::run::runner::{CHECKPOINT_INTERVAL, Run};
 use crate::run::selection::Selection;
 use crate::store::results::Results;
 use crate::store::table::Table;
-use crate::study::finished::FinishedRow;
+use crate::study::finished::{FinishedRow, Judging};
 use crate::study::plan::Generation;
 
 /// A job whose seed is `number`.
@@ -161,8 +161,7 @@ pub fn run<'a>(
         name: "test",
         study: &STUDY,
         planner,
-        result_limits: &[],
-        assumed: &ASSUMED,
+        judging: Judging { limits: &[], assumed: &ASSUMED, minimised: &[] },
         label: &job::label,
         table: &|points, records| {
             Table::build(points, records, &|_| String::new(), &AssumedRanges::default())

@@ -22,7 +22,7 @@ use crate::store::results::Results;
 use crate::store::table::Table;
 use crate::study::finished::FinishedRow;
 use crate::study::plan;
-use crate::study::{Border, Study};
+use crate::study::{Border, Optimum, Study};
 
 /// Ids in the message about an id that is not found or not unique, at most.
 const MAX_IDS_SHOWN: usize = 5;
@@ -125,8 +125,7 @@ impl<'a> Stored<'a> {
     }
 
     fn finished(&self) -> Vec<FinishedRow> {
-        let (limits, assumed) = (self.study.result_limits(), self.study.assumed());
-        finished::rows(&self.points, &self.journal.records, limits, assumed)
+        finished::rows(&self.points, &self.journal.records, self.study.judging())
     }
 
     /// Number of runs planned so far, one for each replicate of a point, also of those that share a job.
@@ -157,6 +156,11 @@ impl<'a> Stored<'a> {
             row.limits = limits.map(|limit| table.judge(limit, *position)).collect();
         }
         plan::borders(&self.study, &finished, &judged)
+    }
+
+    /// What the search of an optimum has found so far; `None` without one.
+    pub fn optimum(&self) -> Option<Optimum> {
+        plan::optimum(&self.study, &self.finished())
     }
 
     /// The point of a job.
@@ -304,8 +308,7 @@ pub fn planned(study: &Study, journal: &Journal) -> Arc<Vec<Point>> {
         if !study.has_generations() {
             break;
         }
-        finished =
-            finished::rows(&points, &journal.records, study.result_limits(), study.assumed());
+        finished = finished::rows(&points, &journal.records, study.judging());
     }
     points
 }

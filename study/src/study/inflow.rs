@@ -10,13 +10,14 @@ use crate::input::settings::{Settings, Strategy};
 use crate::input::source::{Source, shown};
 use crate::input::value::brief_number;
 use crate::platform::error::InputError;
-use crate::scene::file::tank;
+use crate::scene::file::{flow_table, tank};
 
 /// Positions of the values of a window.
 const FROM: usize = position(WINDOW_KEYS, "from");
 const TO: usize = position(WINDOW_KEYS, "to");
 const MASS: usize = position(WINDOW_KEYS, "mass");
 const RATE: usize = position(WINDOW_KEYS, "mass_flow_rate");
+const END_RATE: usize = position(WINDOW_KEYS, "end_mass_flow_rate");
 const TEMPERATURE: usize = position(WINDOW_KEYS, "temperature");
 const TANK_PRESSURE: usize = position(WINDOW_KEYS, "tank_pressure");
 const ORIFICE_AREA: usize = position(WINDOW_KEYS, "orifice_area");
@@ -37,8 +38,12 @@ impl Inflow<'_> {
     pub fn windows(&self) -> Result<Vec<InflowWindow>, InputError> {
         let temperature = self.settings.needed("gas.inflow_temperature", self.source)?;
         let mut windows: Vec<InflowWindow> = self.burst(temperature)?.into_iter().collect();
+        // A window follows the one before where it does not say when it starts.
+        let mut start = self.settings.release_time(self.strategy);
         for index in 0..self.strategy.windows {
-            windows.extend(self.window(index, temperature)?);
+            let parts = self.window(index, start, temperature)?;
+            start = parts.last().map_or(start, |last| last.to);
+            windows.extend(parts);
         }
         Ok(windows)
     }
@@ -73,12 +78,17 @@ impl Inflow<'_> {
     }
 
     /// One window of the strategy, with the study's values where it gives none; of a tank those of its blow-down.
-    fn window(&self, index: usize, temperature: f64) -> Result<Vec<InflowWindow>, InputError> {
+    fn window(
+        &self,
+        index: usize,
+        start: f64,
+        temperature: f64,
+    ) -> Result<Vec<InflowWindow>, InputError> {
         let Self { source, end_time, .. } = *self;
         let path = format!("strategies.{}.inflow[{index}]", self.name);
         let value = |key| self.settings.of_window(self.strategy, index, key);
         let [given_to, mass] = [TO, MASS].map(value);
-        let from = value(FROM).unwrap_or(self.settings.release_time(self.strategy));
+        let from = value(FROM).unwrap_or(start);
         let temperature = value(TEMPERATURE).unwrap_or(temperature);
         let tank = tank::Given {
             mass,
@@ -98,14 +108,21 @@ impl Inflow<'_> {
             };
             return Ok(table.iter().map(at).collect());
         }
+        if let Some(rate) = value(END_RATE).filter(|_| tank.is_tank()) {
+            let key = format!("{path}.end_mass_flow_rate");
+            let problem = "is given beside a tank, whose flow follows from its pressure";
+            return Err(source.error(&key, shown(rate), problem, "a tank, or a ramp"));
+        }
         if tank.is_tank() {
             let outside = self.settings.needed("gas.ambient_pressure", source)?;
             return tank.windows(&path, &self.settings.species(source)?, outside, source);
         }
-        let rate = match value(RATE) {
+        let first = match value(RATE) {
             Some(rate) => rate,
             None => self.settings.needed("gas.mass_flow_rate", source)?,
         };
+        let last = value(END_RATE).unwrap_or(first);
+        let rate = 0.5 * (first + last);
         let to = match (given_to, mass) {
             (Some(_), Some(mass)) => {
                 return Err(source.error(
@@ -129,6 +146,10 @@ impl Inflow<'_> {
             None => given_to.map(|to| ("to", format!("{} s", shown(to)))),
         };
         check_window(&path, [from, to], end, end_time, source)?;
-        Ok(vec![InflowWindow { from, to, mass_flow_rate: rate, temperature }])
+        if value(END_RATE).is_none() {
+            return Ok(vec![InflowWindow { from, to, mass_flow_rate: rate, temperature }]);
+        }
+        let ramp = flow_table::windows_of(&[[0.0, first], [to - from, last]], [from, temperature]);
+        Ok(ramp)
     }
 }

@@ -23,6 +23,7 @@ pub(crate) mod ground;
 mod inflow;
 mod mesh_film;
 mod meshes;
+mod optimise;
 mod parameters;
 mod pilots;
 pub mod plan;
@@ -54,12 +55,14 @@ use crate::job::JobId;
 use crate::job::limits::JobLimits;
 use crate::job::point::{Point, Searched};
 use crate::job::result_limit::ResultLimit;
+use crate::job::row::ColumnId;
 use crate::platform::error::{InputError, Result as BillowResult};
 use crate::scene::file::flow_table;
-use finished::FinishedRow;
+use finished::{FinishedRow, Judging};
 use grid::{Context, Grid};
 pub(crate) use meshes::features;
 pub use meshes::{Meshes, meshes_text};
+pub use optimise::{Optimum, Trial};
 pub use parameters::{StudyKey, Zipped};
 pub use search::{Border, Criterion, Level, SearchResult};
 
@@ -74,6 +77,8 @@ const CHECKSUM: &str = "checksum";
 
 /// The section of the limits of results. It changes no job.
 pub(crate) const LIMITS: &str = "limits";
+/// The section of the search of an optimum.
+pub(crate) const OPTIMISE: &str = "optimise";
 /// The section of the samples.
 pub(crate) const SAMPLES: &str = "samples";
 /// The section of the replicates.
@@ -229,6 +234,12 @@ impl Study {
         self.grid.sampled()
     }
 
+    /// Whether each input that is sampled takes its values whatever the others are.
+    pub fn samples_are_independent(&self) -> bool {
+        let correlations = self.file.get(SAMPLES).and_then(|samples| samples.get("correlations"));
+        correlations.is_none_or(|given| matches!(given, Json::List(pairs) if pairs.is_empty()))
+    }
+
     /// Names of the parameters that repeat a sample of a point; without samples [`Self::replicates`]. Comparisons pair equal
     /// samples, so a sample is a point to them.
     pub fn replicates_of_samples(&self) -> Vec<String> {
@@ -248,12 +259,20 @@ impl Study {
         Meshes { list, of_pilots: self.pilots.is_some(), of_file: self.has_mesh() }
     }
 
-    /// The runs of its pilots, once these planned points are finished; none where it needs no pilots.
-    pub(crate) fn pilots(&self, planned: &[Point], finished: &[FinishedRow]) -> Vec<Point> {
-        self.pilots.map_or_else(Vec::new, |meshes| {
-            let of = (&self.settings, &self.grid);
-            pilots::points(of, &meshes, &self.result_limits, planned, finished)
-        })
+    /// The runs of its pilots, generation after generation, once these planned points are finished; none where it needs no
+    /// pilots. `best` are the jobs of the best points of a search, the best first.
+    pub(crate) fn pilots(
+        &self,
+        planned: &[Point],
+        finished: &[FinishedRow],
+        best: Option<&[Vec<JobId>]>,
+    ) -> Vec<Vec<Point>> {
+        let Some(meshes) = &self.pilots else { return Vec::new() };
+        if let Some(best) = best {
+            return pilots::confirming(&self.settings, meshes, best, planned, finished);
+        }
+        let of = (&self.settings, &self.grid);
+        vec![pilots::points(of, meshes, &self.result_limits, planned, finished)]
     }
 
     /// Whether its film is that of a mesh.
@@ -264,6 +283,15 @@ impl Study {
     /// A design on a mesh with these subdivisions.
     pub(crate) fn on_mesh(&self, design: &Design, n: u32) -> Design {
         self.settings.on_mesh(design, n)
+    }
+
+    /// Which of its points its pilots are, in words.
+    pub fn pilots_are(&self) -> &'static str {
+        if self.grid.optimise.is_some() {
+            "the best point"
+        } else {
+            "the points nearest to a limit"
+        }
     }
 
     /// Whether a planned point is the run of a pilot on another mesh than that of the study.
@@ -279,6 +307,9 @@ impl Study {
     /// The most pilots that it can have, one for each run of a point.
     pub fn most_pilots(&self) -> usize {
         let samples = self.grid.sample_count();
+        if self.grid.optimise.is_some() {
+            return pilots::MAX_CONFIRMED * self.replicate_count();
+        }
         (self.point_count() * samples).min(2 * pilots::NEAREST) * (self.replicate_count() / samples)
     }
 
@@ -289,7 +320,29 @@ impl Study {
 
     /// Whether its finished rows decide about further points.
     pub fn has_generations(&self) -> bool {
-        self.grid.search.is_some() || self.pilots.is_some()
+        self.grid.search.is_some() || self.grid.optimise.is_some() || self.pilots.is_some()
+    }
+
+    /// Whether its answer says more than its rows: it has samples, searches an optimum, or varies several parameters.
+    pub fn asks_beyond_rows(&self) -> bool {
+        let varied = self.grid.columns.len() - self.replicates().len();
+        self.grid.sample_count() > 1 || self.grid.optimise.is_some() || varied > 1
+    }
+
+    /// The measures that it makes small; none without a search of an optimum.
+    pub fn minimised(&self) -> &[ColumnId] {
+        self.grid.optimise.as_ref().map_or(&[], |optimise| &optimise.minimise)
+    }
+
+    /// What its results are judged by.
+    pub fn judging(&self) -> Judging<'_> {
+        let (limits, assumed) = (self.result_limits(), self.assumed());
+        Judging { limits, assumed, minimised: self.minimised() }
+    }
+
+    /// Number of points of the search of an optimum in all, and of a generation after the first; `None` without one.
+    pub fn budget(&self) -> Option<[usize; 2]> {
+        self.grid.optimise.as_ref().map(|optimise| [optimise.budget, optimise.batch])
     }
 
     /// The parameter along which it searches a border, and what changes there; `None` without a search.
@@ -310,9 +363,11 @@ impl Study {
     /// Whether no row of its table depends on another one: it has a product of axes alone, without replicates and
     /// numerical choices.
     pub fn rows_stand_alone(&self) -> bool {
-        let Grid { columns, axes, points, search, .. } = &self.grid;
-        let is_plain =
-            search.is_none() && points.is_empty() && !axes.iter().any(|a| a.kind.repeats());
+        let Grid { columns, axes, points, search, optimise, .. } = &self.grid;
+        let is_plain = search.is_none()
+            && optimise.is_none()
+            && points.is_empty()
+            && !axes.iter().any(|a| a.kind.repeats());
         is_plain && !columns.iter().any(|column| is_numerical(&column.name))
     }
 

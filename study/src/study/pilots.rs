@@ -5,7 +5,8 @@
 //! pilots = the NEAREST points that meet that limit, and the NEAREST that do not
 //! ```
 //! Their three meshes give extrapolated values with an error; the other points take the largest error of the pilots
-//! ([`crate::store::table::pilots`]). A study that gives `solver.meshes` or varies the mesh has none.
+//! ([`crate::store::table::pilots`]). The pilots of the search of an optimum are its best point, whatever is known of its
+//! error; where it does not keep the limits on the finest mesh, the next best is added. A study that gives `solver.meshes` or varies the mesh has none.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -30,6 +31,9 @@ use crate::job::{Job, JobId, Parameters};
 /// Pilots on each side of the limits, at most. Chosen: both ends of a border, and a second point to see how much the
 /// error changes from point to point.
 pub(super) const NEAREST: usize = 2;
+/// Best points of a search that run on finer meshes at most. Chosen: where three do not keep the limits there, the mesh of
+/// the search is too coarse for it.
+pub(super) const MAX_CONFIRMED: usize = 3;
 /// Number of meshes of a pilot: three give an error without the table.
 const MESHES: usize = 3;
 
@@ -41,11 +45,15 @@ pub(super) fn meshes(
     limits: &[ResultLimit],
     points: &[Point],
 ) -> Option<[u32; MESHES]> {
-    if !limits.iter().any(needs_error) || grid.columns.iter().any(|c| c.index == SUBDIVISIONS) {
+    if grid.columns.iter().any(|column| column.index == SUBDIVISIONS) {
         return None;
     }
     // Where all are inside, a large study looks at each.
-    if !points.par_iter().any(is_outside) {
+    let needed = match grid.optimise {
+        Some(_) => points.iter().all(|point| point.job.scene.solver.model == ModelKind::Film),
+        None => limits.iter().any(needs_error) && points.par_iter().any(is_outside),
+    };
+    if !needed {
         return None;
     }
     let Value::Integer(n) = settings.at(SUBDIVISIONS) else { return None };
@@ -99,7 +107,6 @@ pub(super) fn points(
     planned: &[Point],
     finished: &[FinishedRow],
 ) -> Vec<Point> {
-    let name = short_name(SUBDIVISIONS);
     let by_id: BTreeMap<&JobId, &FinishedRow> = finished.iter().map(|row| (&row.id, row)).collect();
     let key = |point: &Point| -> Vec<String> {
         let fixed = point.job.parameters.iter().enumerate();
@@ -140,6 +147,43 @@ pub(super) fn points(
         side.sort_by(|(a, _), (b, _)| by_distance(a, b));
         chosen.extend(side.into_iter().take(NEAREST).flat_map(|(_, runs)| runs.iter().copied()));
     }
+    on_other_meshes(settings, meshes, &chosen)
+}
+
+/// The runs of the best points of a search on their other meshes, the jobs of each a generation: one point after the other
+/// until one keeps the limits on the finest mesh.
+pub(super) fn confirming(
+    settings: &Settings,
+    meshes: &[u32],
+    best: &[Vec<JobId>],
+    planned: &[Point],
+    finished: &[FinishedRow],
+) -> Vec<Vec<Point>> {
+    let by_id: BTreeMap<&JobId, &FinishedRow> = finished.iter().map(|row| (&row.id, row)).collect();
+    let finest = meshes.iter().max();
+    let mut generations = Vec::new();
+    for jobs in best.iter().take(MAX_CONFIRMED) {
+        let of = planned.iter().filter(|point| jobs.contains(&point.job.id)).collect::<Vec<_>>();
+        let runs = on_other_meshes(settings, meshes, &of);
+        let keeps = |point: &Point| {
+            let row = by_id.get(&point.job.id);
+            let keeps = |judged: &Option<Judged>| judged.is_some_and(|judged| judged.met);
+            row.is_some_and(|row| row.limits.iter().all(keeps))
+        };
+        let on_finest = |point: &&Point| Some(&point.job.scene.design.subdivisions()) == finest;
+        let open = runs.iter().any(|run| !by_id.contains_key(&run.job.id));
+        let kept = runs.iter().filter(on_finest).all(keeps);
+        generations.push(runs);
+        if open || kept {
+            break;
+        }
+    }
+    generations
+}
+
+/// The runs of these points on their other meshes.
+fn on_other_meshes(settings: &Settings, meshes: &[u32], points: &[&Point]) -> Vec<Point> {
+    let name = short_name(SUBDIVISIONS);
     let on_mesh = |point: &&Point, n: u32| {
         let mesh = Value::Integer(i64::from(n));
         let parameters = |of: &Parameters| with_mesh(of, name, &mesh);
@@ -156,7 +200,7 @@ pub(super) fn points(
             ..(*point).clone()
         }
     };
-    let runs = chosen.iter().flat_map(|point| {
+    let runs = points.iter().flat_map(|point| {
         let others = meshes.iter().filter(|n| **n != point.job.scene.design.subdivisions());
         others.map(|n| on_mesh(point, *n))
     });
@@ -188,7 +232,7 @@ mod tests {
             let margin = margin(rate);
             let judged = Judged { met: margin > 0.0, margin, uncertainty: None };
             let (id, limits) = (point.job.id.clone(), vec![Some(judged)]);
-            FinishedRow { id, status: Status::Done, verdict: None, limits }
+            FinishedRow { id, status: Status::Done, verdict: None, limits, minimised: vec![] }
         };
         points.iter().map(row).collect()
     }

@@ -11,7 +11,7 @@ use crate::job::JobId;
 use crate::job::point::Point;
 use crate::study::finished::FinishedRow;
 use crate::study::search::replay::Replay;
-use crate::study::{Border, Study};
+use crate::study::{Border, Optimum, Study, optimise};
 
 /// Points that are planned together.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,7 +60,7 @@ impl PlanCounts {
 ///
 /// A generation is planned whole while any of its jobs has no finished row; the runner leaves out the
 /// finished ones. A grid has one generation, a search one more each time its jobs have ended. Infeasible
-/// points have no job to finish. The pilots of a study are its last generation. Without any finished row the first
+/// points have no job to finish. The pilots of a study are its last generations. Without any finished row the first
 /// generation is always given, so that a study of infeasible points gets its rows.
 pub fn next_jobs(study: &Study, finished: &[FinishedRow]) -> Option<Generation> {
     let ids: BTreeSet<&JobId> = finished.iter().map(|row| &row.id).collect();
@@ -75,24 +75,64 @@ pub fn next_jobs(study: &Study, finished: &[FinishedRow]) -> Option<Generation> 
     let mut planned =
         if has_pilots { generation(0, study.points()).points } else { Arc::default() };
     let mut number = 1;
-    if let Some(mut replay) = Replay::new(study, finished) {
-        loop {
-            let points = Arc::new(replay.next_points());
-            if points.is_empty() {
-                break;
-            }
-            if is_open(&points) {
-                return Some(generation(number, &points));
-            }
-            replay.add(&points);
-            if has_pilots {
-                add_generation(&mut planned, generation(number, &points));
-            }
-            number += 1;
+    let mut searching = Searching::of(study, finished);
+    while let Some(points) = searching.next_points().map(Arc::new) {
+        if is_open(&points) {
+            return Some(generation(number, &points));
+        }
+        searching.add(&points);
+        if has_pilots {
+            add_generation(&mut planned, generation(number, &points));
+        }
+        number += 1;
+    }
+    let best = match &searching {
+        Searching::Optimum(replay) => Some(replay.to_confirm()),
+        _ => None,
+    };
+    for pilots in study.pilots(&planned, finished, best.as_deref()) {
+        if is_open(&pilots) {
+            return Some(generation(number, &Arc::new(pilots)));
+        }
+        number += 1;
+    }
+    None
+}
+
+/// The search of a study, if it has one.
+enum Searching<'a> {
+    /// A grid.
+    Nothing,
+    /// Of borders.
+    Border(Replay<'a>),
+    /// Of an optimum.
+    Optimum(optimise::Replay<'a>),
+}
+
+impl<'a> Searching<'a> {
+    fn of(study: &'a Study, finished: &'a [FinishedRow]) -> Self {
+        let border = Replay::new(study, finished).map(Self::Border);
+        let optimum = || optimise::Replay::new(study, finished).map(Self::Optimum);
+        border.or_else(optimum).unwrap_or(Self::Nothing)
+    }
+
+    /// The points of the next generation; `None` at the end.
+    fn next_points(&mut self) -> Option<Vec<Point>> {
+        let points = match self {
+            Self::Nothing => Vec::new(),
+            Self::Border(replay) => replay.next_points(),
+            Self::Optimum(replay) => replay.next_points(),
+        };
+        (!points.is_empty()).then_some(points)
+    }
+
+    fn add(&mut self, points: &[Point]) {
+        match self {
+            Self::Nothing => {}
+            Self::Border(replay) => replay.add(points),
+            Self::Optimum(replay) => replay.add(points),
         }
     }
-    let pilots = Arc::new(study.pilots(&planned, finished));
-    is_open(&pilots).then(|| generation(number, &pilots))
 }
 
 /// Adds a generation to the points planned before. A job that is planned already keeps its place and its
@@ -128,6 +168,19 @@ pub fn borders(study: &Study, finished: &[FinishedRow], judged: &[FinishedRow]) 
         }
         replay.add(&points);
     }
+}
+
+/// What the search of an optimum has found with these finished jobs; `None` for a study without one.
+pub fn optimum(study: &Study, finished: &[FinishedRow]) -> Option<Optimum> {
+    let mut replay = optimise::Replay::new(study, finished)?;
+    while replay.has_ended_so_far() {
+        let points = replay.next_points();
+        if points.is_empty() {
+            break;
+        }
+        replay.add(&points);
+    }
+    Some(replay.optimum())
 }
 
 /// A generation of these points. Points with the same job are merged into the first of them.

@@ -2,7 +2,7 @@
 //! file writes for a key, first under `grid`, then in its section; for a measure those of its limit.
 
 use super::column;
-use super::{JOB_LIMITS, LIMITS, REPLICATES, SAMPLES, UNITS};
+use super::{JOB_LIMITS, LIMITS, OPTIMISE, REPLICATES, SAMPLES, UNITS};
 use crate::input::json::Json;
 use crate::input::keys::{self, KEYS, KeyKind, STUDY};
 use crate::input::object::object;
@@ -16,7 +16,8 @@ use crate::platform::nearest::or_nearest;
 /// Members of a range and of a search that hold values of the key.
 const VALUE_MEMBERS: [&str; 4] = ["from", "to", "step", "bisect"];
 /// Sections in which no key of the study has its value.
-const WITHOUT_VALUES: [&str; 6] = ["grid", UNITS, JOB_LIMITS, LIMITS, REPLICATES, SAMPLES];
+const WITHOUT_VALUES: [&str; 7] =
+    ["grid", UNITS, JOB_LIMITS, LIMITS, OPTIMISE, REPLICATES, SAMPLES];
 /// What the section `units` must look like, for errors.
 const ALLOWED: &str =
     "a unit of this quantity, as in {\"mass_flow_rate\": \"g/s\", \"t_90_z_rim\": \"ms\"}";
@@ -51,6 +52,7 @@ pub(super) fn read(
             }
         }
     }
+    varied.extend(self::varied(tree.get(OPTIMISE).and_then(|optimise| optimise.get("over"))));
     for (name, value) in varied {
         if let Some(index) = settings.find(name) {
             suggest(&mut units, &settings.name(index), value);

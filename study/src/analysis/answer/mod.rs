@@ -22,16 +22,18 @@ use crate::study::assumptions::assumptions;
 use crate::study::{Study, Zipped};
 
 mod inflow;
+mod optimum;
 mod points;
 mod safety;
 mod searches;
 mod tolerances;
 mod trust;
 
+pub use optimum::{Best, Optimum, Small, Tried};
 pub use points::{MixedPoint, PointCounts, VerdictSensitivity};
 pub use safety::{Nearest, SafeCounts, Safety};
 pub use searches::{Found, Searches};
-pub use tolerances::{MESH, Part, Quantile, Tolerance};
+pub use tolerances::{Importance, MESH, Part, Quantile, Tolerance};
 pub use trust::Trust;
 
 /// Most values of a parameter that the answer compares. Chosen: more are a chart, or `billow compare --rank`.
@@ -81,8 +83,12 @@ pub struct Answer {
     pub safety: Option<Safety>,
     /// What samples say of each point.
     pub tolerances: Vec<Tolerance>,
+    /// Of a grid, which parameter makes the spread of each measure.
+    pub importance: Vec<(String, Importance)>,
     /// What the searches of borders found.
     pub searches: Option<Searches>,
+    /// What the search of an optimum found.
+    pub optimum: Option<Optimum>,
 }
 
 /// The job with the smallest or largest value of a measure.
@@ -134,8 +140,19 @@ impl Answer {
         });
         answer.worst = worst.collect();
         answer.safety = Safety::of(table, limits, &rows, &replicates);
-        answer.tolerances = Tolerance::all(table, limits, &replicates, &study.sampled());
-        answer.comparisons = comparisons(table, &rows, study);
+        let sampled = study.sampled();
+        answer.optimum = Optimum::of(stored, table);
+        if answer.optimum.is_some() {
+            // Its points are not spread evenly: what is known of them is what the search found.
+        } else if sampled.is_empty() {
+            answer.importance = tolerances::of_grid(table, limits, &replicates);
+        } else {
+            let inputs = (sampled.as_slice(), study.samples_are_independent());
+            answer.tolerances = Tolerance::all(table, limits, &replicates, inputs);
+        }
+        if answer.optimum.is_none() {
+            answer.comparisons = comparisons(table, &rows, study);
+        }
         let scenes = stored.points.iter().map(|point| (point.job.id.as_str(), &*point.job.scene));
         let scenes = scenes.collect();
         let compared = answer.comparisons.iter().filter(|(_, ranking)| ranking.is_ok());

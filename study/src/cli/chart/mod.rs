@@ -7,6 +7,7 @@ use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption, paramet
 use super::picture::{self, Picture, refused};
 use super::results::{self, StudyArgs};
 use super::{Format, output_error};
+use crate::analysis::answer::Answer;
 use crate::analysis::replicates::Condensed;
 use crate::chart::Source;
 use crate::chart::borders::Searched;
@@ -34,8 +35,9 @@ pub struct Args {
     /// per column.
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',', conflicts_with_all = ["measure"])]
     history: Vec<String>,
-    /// Draw this column of the table, over a parameter (--over) or two (--map), or alone as a tornado: how much each factor
-    /// changes it, of points that vary one factor at a time. `safe` and `verdict` are the
+    /// Draw this column of the table, over a parameter (--over) or two (--map), or alone: which input makes its spread, of
+    /// samples and grids; how the search of an optimum went on; or as a tornado how much each factor changes it, of points
+    /// that vary one factor at a time. `safe` and `verdict` are the
     /// proportion of runs that are safe, or deployed, as a map; without --map over the first two parameters that
     /// vary.
     #[arg(long, value_name = "COLUMN", groups = ["with_over", "with_map"])]
@@ -192,7 +194,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     }
     opened.add_keys(&[], args.condition.as_deref());
     let mut written: Vec<PathBuf> = Vec::new();
-    draw(args, &opened.stored, &opened.table, range, &|_| true, &mut |kind, svg| {
+    draw(args, (&opened.stored, &opened.table, None), range, &|_| true, &mut |kind, svg| {
         if let Some(path) = out_file {
             picture::write(path, &svg)?;
             written.push(path.to_owned());
@@ -209,11 +211,13 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
 ///
 /// # Errors
 /// Those of the charts.
-pub(super) fn of_answer(stored: &Stored<'_>, table: &Table) -> Result<Vec<(String, String)>> {
+pub(super) fn of_answer(
+    (stored, table, answer): (&Stored<'_>, &Table, &Answer),
+) -> Result<Vec<(String, String)>> {
     let mut charts = Vec::new();
     let args = Args { quiet: QuietOption { quiet: true }, ..Args::default() };
     let is_drawn = |kind: &ChartKind| !matches!(kind, ChartKind::History(_));
-    draw(&args, stored, table, [None; 2], &is_drawn, &mut |kind, svg| {
+    draw(&args, (stored, table, Some(answer)), [None; 2], &is_drawn, &mut |kind, svg| {
         charts.push((kind.file_name(), svg));
         Ok(())
     })?;
@@ -224,8 +228,7 @@ pub(super) fn of_answer(stored: &Stored<'_>, table: &Table) -> Result<Vec<(Strin
 /// `each`.
 fn draw(
     args: &Args,
-    stored: &Stored<'_>,
-    table: &Table,
+    (stored, table, answer): (&Stored<'_>, &Table, Option<&Answer>),
     range: [Option<f64>; 2],
     is_drawn: &dyn Fn(&ChartKind) -> bool,
     each: &mut dyn FnMut(&ChartKind, String) -> Result<()>,
@@ -243,7 +246,15 @@ fn draw(
         borders: &borders,
     });
     let limits = study.result_limits();
-    let single = Source { limits, search, ..source(args, &name, table)? };
+    let computed;
+    let answer = match answer {
+        None if study.asks_beyond_rows() => {
+            computed = Answer::of(stored, table);
+            Some(&computed)
+        }
+        other => other,
+    };
+    let single = Source { limits, search, answer, ..source(args, &name, table)? };
     let is_mesh = |name: &String| name == MESH_PARAMETER;
     let meshes = if replicates.iter().any(is_mesh) { study.meshes() } else { Meshes::default() };
     let condensed =
@@ -315,7 +326,17 @@ fn source<'a>(args: &Args, study: &'a str, table: &'a Table) -> Result<Source<'a
         (None, _) => "(chosen jobs)".to_owned(),
     };
     let title = args.title.clone().unwrap_or_default();
-    Ok(Source { study, table, rows, choice, title, limits: &[], runs: None, search: None })
+    Ok(Source {
+        study,
+        table,
+        rows,
+        choice,
+        title,
+        limits: &[],
+        runs: None,
+        search: None,
+        answer: None,
+    })
 }
 
 /// Name of the results folder; the whole path when it has no last part, as in ".".

@@ -188,7 +188,8 @@ fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generati
     if let Some(text) = lengths::in_use(&fitting) {
         eprintln!("{text}");
     }
-    let cost = forecast(&missing, study.searched().is_some(), memory.threads);
+    let searches = study.searched().is_some() || study.budget().is_some();
+    let cost = forecast(&missing, searches, memory.threads);
     cost.into_iter().chain(memory.forecast(study)).for_each(|text| eprintln!("{text}"));
     Ok(())
 }

@@ -34,7 +34,8 @@ fn lacks(model: ModelKind, measure: ColumnId) -> bool {
 
 /// What a reader of the plan must know of its searches and limits.
 pub(super) fn notes(study: &Study, counts: &PlanCounts) -> Vec<String> {
-    let mut notes: Vec<String> = search(study, counts).into_iter().collect();
+    let search = search(study, counts).or_else(|| optimise(study, counts));
+    let mut notes: Vec<String> = search.into_iter().collect();
     notes.extend(limits(study));
     notes.extend(pilots(study));
     notes
@@ -64,10 +65,10 @@ fn pilots(study: &Study) -> Option<String> {
     let runs = study.most_pilots();
     let seconds: f64 = runs as f64 * seconds.sum::<f64>();
     Some(format!(
-        "pilots: up to {}, on n {} of the points nearest to a limit, about {} of core time; \"solver\": \
-         {{\"meshes\": [{mesh}]}} leaves them out",
+        "pilots: up to {}, on n {} of {}, about {} of core time; \"solver\": {{\"meshes\": [{mesh}]}} leaves them out",
         count(runs * others.len(), "job"),
         meshes_text(&others),
+        study.pilots_are(),
         duration(libm::ceil(seconds)),
     ))
 }
@@ -83,6 +84,23 @@ fn search(study: &Study, counts: &PlanCounts) -> Option<String> {
         count(searches.len(), "search"),
         count(counts.jobs, "job"),
         more * searches.len(),
+    ))
+}
+
+/// How many jobs the search of an optimum takes.
+fn optimise(study: &Study, counts: &PlanCounts) -> Option<String> {
+    let [budget, batch] = study.budget()?;
+    let (runs, first) = (study.replicate_count(), study.point_count());
+    let names: Vec<&str> = study.minimised().iter().map(|measure| measure.name()).collect();
+    Some(format!(
+        "search: smallest {} among points that keep the limits; first generation {} of {}; then generations of {} up to {}, \
+         {} in all",
+        names.join(" and "),
+        count(first, "point"),
+        count(counts.jobs, "job"),
+        batch,
+        count(budget, "point"),
+        count(budget * runs, "job"),
     ))
 }
 

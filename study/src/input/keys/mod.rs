@@ -25,7 +25,7 @@ pub use quantity::Quantity;
 pub use row::{named, position};
 pub use study::{KEYS, SECTIONS};
 pub use study_objects::{
-    CAPSULE_SUPPORT_KEYS, RANGE_KEYS, SEARCH_KEYS, STRATEGY_KEYS, WINDOW_KEYS,
+    CAPSULE_SUPPORT_KEYS, OPTIMISE_KEYS, RANGE_KEYS, SEARCH_KEYS, STRATEGY_KEYS, WINDOW_KEYS,
 };
 pub use table::{SCENE, STUDY, Table, find, index, short_name, shortened};
 pub(crate) use words::{

@@ -73,6 +73,12 @@ pub(crate) const STRUCTURED: &[(&str, &str)] = &[
          latin_hypercube; seed; correlations.",
     ),
     (
+        "optimise",
+        "A search of the point with the smallest measure that keeps the limits, as in {\"minimise\": \"peak_vz\", \"over\": \
+         {\"mass_flow_rate\": [\"1 g/s\", \"10 g/s\"]}, \"budget\": 40}: two measures give the front between them; over has \
+         ranges of quantities and whole numbers, and lists of words; budget is the number of points; batch; seed.",
+    ),
+    (
         "replicates",
         "Parameters whose values repeat each point, as in {\"seed\": 5} (seeds 1 to 5) or {\"seed\": [1, 2, 7]}. Each \
          run is a row; tables, comparisons and charts show median, range and proportions.",

@@ -11,7 +11,10 @@ fn all_keys() -> impl Iterator<Item = &'static Key> {
         table.keys.iter().copied().chain(objects.iter().flat_map(|(_, keys)| *keys))
     };
     let both = [FileKind::Study, FileKind::Scene].into_iter().flat_map(keys);
-    both.filter(|key| key.path != "gravity").chain(RANGE_KEYS).chain(SEARCH_KEYS)
+    both.filter(|key| key.path != "gravity")
+        .chain(RANGE_KEYS)
+        .chain(SEARCH_KEYS)
+        .chain(OPTIMISE_KEYS)
 }
 
 #[test]

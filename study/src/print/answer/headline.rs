@@ -1,6 +1,7 @@
 //! The answer in one line: which choice is safest, or how many points are safe.
 
 use super::comparisons::{listed, value};
+use super::optimum::of_point;
 use super::parameters_text;
 use super::tolerances::probability;
 use crate::analysis::answer::{Answer, SafeCounts, Tolerance};
@@ -13,6 +14,11 @@ const MAX_POINTS: usize = 4;
 
 /// The line; `None` for a study without limits, and for one that searches a border: its borders say it.
 pub(super) fn headline(answer: &Answer) -> Option<String> {
+    match answer.optimum.as_ref().map(|found| found.best.as_slice()) {
+        Some([best]) => return Some(of_point(best)),
+        Some([_, ..]) => return None,
+        _ => {}
+    }
     let safety = answer.safety.as_ref().filter(|_| answer.searches.is_none())?;
     if !answer.tolerances.is_empty() {
         return Some(of_samples(&answer.tolerances));

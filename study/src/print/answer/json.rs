@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::analysis::answer::{Answer, Searches};
+use crate::analysis::answer::{Answer, Importance, Searches};
 use crate::analysis::ranking::Ranking;
 use crate::input::value::json_value;
 use crate::print::json_objects;
@@ -43,8 +43,16 @@ pub fn json(answer: &Answer) -> Value {
         "verdict_depends_on": answer.sensitivity,
         "safe": answer.safety,
         "tolerances": answer.tolerances,
+        "importance": answer.importance.iter().map(importance_json).collect::<Vec<_>>(),
+        "optimum": answer.optimum,
         "borders": answer.searches.as_ref().map(borders_json),
     })
+}
+
+fn importance_json((measure, found): &(String, Importance)) -> Value {
+    let mut found = json!(found);
+    found["measure"] = json!(measure);
+    found
 }
 
 /// The searches: the rows of `billow table --borders`.

@@ -21,6 +21,7 @@ mod border;
 mod comparisons;
 mod headline;
 mod json;
+mod optimum;
 mod safe;
 mod tolerances;
 
@@ -70,7 +71,9 @@ pub fn topics(answer: &Answer) -> Vec<Topic> {
         wrapped("safe", answer.safety.iter().map(safe::safe).collect()),
         // Samples say it better.
         wrapped("mixed", if samples { Vec::new() } else { safe::mixed(&answer.mixed) }),
+        wrapped("optimum", answer.optimum.iter().flat_map(optimum::lines).collect()),
         wrapped("samples", tolerances::lines(&answer.tolerances)),
+        wrapped("matters", tolerances::of_grid(&answer.importance)),
         // The border is what a study with a search asks for, so it stands before the single jobs.
         wrapped("border", answer.searches.iter().flat_map(border::lines).collect()),
     ];

@@ -3,11 +3,14 @@
 use std::fmt::Write as _;
 
 use super::parameters_text;
-use crate::analysis::answer::{MESH, Part, Quantile, Tolerance};
+use crate::analysis::answer::{Importance, MESH, Part, Quantile, Tolerance};
 use crate::input::units::DisplayUnit;
 use crate::input::value::brief_number;
 use crate::job::proportion::Proportion;
 use crate::print::{MAX_VALUES, count};
+
+/// Part of a spread below which an input is only named.
+const SMALL: f64 = 0.01;
 
 /// For each point a line, then one for each measure.
 pub(super) fn lines(points: &[Tolerance]) -> Vec<String> {
@@ -40,8 +43,8 @@ fn of_point(point: &Tolerance) -> Vec<String> {
         let quantiles: Vec<String> =
             spread.quantiles.iter().map(|one| quantile(one, &spread.shown)).collect();
         let mut text = format!("  {}: {} of the samples", spread.measure, quantiles.join(", "));
-        if !spread.inputs.is_empty() {
-            let _ = write!(text, "; their spread is made by {}", parts(&spread.inputs));
+        if !spread.inputs.parts.is_empty() {
+            let _ = write!(text, "; their spread is made by {}", importance(&spread.inputs));
         }
         let deviation = spread.shown.of_difference().brief(spread.deviation);
         let _ = write!(
@@ -85,16 +88,52 @@ pub(super) fn probability(point: &Tolerance) -> String {
     text
 }
 
-/// "thickness 63 % (45 to 81), friction 2 % (0 to 6)".
+/// For each measure of a grid a line.
+pub(super) fn of_grid(measures: &[(String, Importance)]) -> Vec<String> {
+    let line = |(name, found): &(String, Importance)| {
+        format!("the spread of {name} is made by {}", importance(found))
+    };
+    measures.iter().map(line).collect()
+}
+
+/// "thickness 63 % (45 to 81), with others 70 % (66 to 75); … (a surrogate foresees 93 % of the variance of …)".
+fn importance(found: &Importance) -> String {
+    let (shown, small): (Vec<&Part>, Vec<&Part>) = found.parts.iter().partition(|part| {
+        let largest = part.total.map_or(part.part, |(total, _)| total);
+        largest >= SMALL || part.between.is_none()
+    });
+    let mut texts: Vec<String> = shown.into_iter().map(part).collect();
+    if !small.is_empty() {
+        let names: Vec<&str> = small.iter().map(|part| part.name.as_str()).collect();
+        texts.push(format!("below 1 % {}", names.join(", ")));
+    }
+    let percent = |seen: f64| format!("{:.0} %", 100.0 * seen.max(0.0));
+    let why = match (found.seen, found.indices) {
+        (Some(seen), true) => format!("a surrogate foresees {} at points left out", percent(seen)),
+        (Some(seen), false) if seen < 0.5 => {
+            format!("ranks: a surrogate foresees only {} at points left out", percent(seen))
+        }
+        _ => "ranks".to_owned(),
+    };
+    format!("{} ({why})", texts.join(", "))
+}
+
 fn parts(parts: &[Part]) -> String {
+    parts.iter().map(part).collect::<Vec<_>>().join(", ")
+}
+
+/// "thickness 63 % (45 to 81)", "thickness 63 % (45 to 81), with others 70 % (66 to 75)".
+fn part(part: &Part) -> String {
     let percent = |part: f64| format!("{:.0}", 100.0 * part);
-    let text = |part: &Part| {
-        let between = part.between.map_or_else(String::new, |[low, high]| {
+    let of = |value: f64, between: Option<[f64; 2]>| {
+        let between = between.map_or_else(String::new, |[low, high]| {
             format!(" ({} to {})", percent(low), percent(high))
         });
-        format!("{} {} %{between}", part.name, percent(part.part))
+        format!("{} %{between}", percent(value))
     };
-    parts.iter().map(text).collect::<Vec<_>>().join(", ")
+    let total =
+        part.total.map(|(total, between)| format!(" and with others {}", of(total, Some(between))));
+    format!("{} {}{}", part.name, of(part.part, part.between), total.unwrap_or_default())
 }
 
 /// "95 % below 24.1 m/s (22.8 to 27)".

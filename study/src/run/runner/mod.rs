@@ -14,12 +14,10 @@ use std::num::NonZero;
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::accuracy::AssumedRanges;
 use crate::input::json::Json;
 use crate::job::executor::Executor;
 use crate::job::limits::JobLimits;
 use crate::job::point::Point;
-use crate::job::result_limit::ResultLimit;
 use crate::job::row::Counts;
 use crate::job::{JobId, Parameters};
 use crate::platform::error::Result;
@@ -30,7 +28,7 @@ use crate::run::selection::Selection;
 use crate::store::journal::Record;
 use crate::store::results::Results;
 use crate::store::table::Table;
-use crate::study::finished::FinishedRow;
+use crate::study::finished::{FinishedRow, Judging};
 use crate::study::plan::Generation;
 
 mod attempt_log;
@@ -55,10 +53,8 @@ pub struct Run<'a> {
     pub study: &'a Json,
     /// [`crate::study::plan::next_jobs`] of that study.
     pub planner: &'a dyn Fn(&[FinishedRow]) -> Option<Generation>,
-    /// What the results must meet to be safe.
-    pub result_limits: &'a [ResultLimit],
-    /// The ranges of what is assumed.
-    pub assumed: &'a AssumedRanges,
+    /// What its results are judged by.
+    pub judging: Judging<'a>,
     /// The table of the points planned so far, from the records of their jobs.
     pub table: &'a TableOf<'a>,
     /// The parameters of a job as text, for messages.

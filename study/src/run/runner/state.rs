@@ -263,7 +263,7 @@ impl<'a, 'w> State<'a, 'w> {
 
     /// Finished rows for the planner, in plan order.
     pub(super) fn finished(&self) -> Vec<FinishedRow> {
-        finished::rows(&self.points, &self.records, self.run.result_limits, self.run.assumed)
+        finished::rows(&self.points, &self.records, self.run.judging)
     }
 
     /// The result of the run so far.

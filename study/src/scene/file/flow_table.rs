@@ -62,8 +62,8 @@ pub(crate) fn of_study(tree: &mut Json, source: &Source) -> Checked<FlowTables> 
 }
 
 /// Keys of an inflow window that a table takes the place of.
-pub(super) const BESIDE: [&str; 5] =
-    ["to", "mass_flow_rate", "mass", "tank_pressure", "orifice_area"];
+pub(super) const BESIDE: [&str; 6] =
+    ["to", "mass_flow_rate", "end_mass_flow_rate", "mass", "tank_pressure", "orifice_area"];
 
 /// The windows of a table that a key names, its times counted from `start` (s), of gas at this temperature (K).
 pub(super) fn windows(
@@ -114,7 +114,7 @@ fn points(json: &Json, key: &str, reader: &mut Reader) -> Result<Vec<[f64; 2]>> 
 }
 
 /// The windows between points, their times counted from `start` (s), of gas at this temperature (K).
-fn windows_of(points: &[[f64; 2]], [start, temperature]: [f64; 2]) -> Vec<InflowWindow> {
+pub(crate) fn windows_of(points: &[[f64; 2]], [start, temperature]: [f64; 2]) -> Vec<InflowWindow> {
     let mut windows = Vec::new();
     for pair in points.windows(2) {
         let [[t, a], [end, b]] = [pair[0], pair[1]];

@@ -4,8 +4,9 @@ mod read;
 
 use super::column::Column;
 use super::filter::Filter;
+use super::optimise::Optimise;
 use super::search::Search;
-use super::{REPLICATES, SAMPLES};
+use super::{OPTIMISE, REPLICATES, SAMPLES};
 use crate::input::settings::Settings;
 use crate::input::source::Source;
 use crate::input::value::Value;
@@ -35,6 +36,8 @@ pub(super) struct Grid {
     pub filter: Option<Filter>,
     /// The search of a border along one of the axes.
     pub search: Option<Search>,
+    /// The search of an optimum.
+    pub optimise: Option<Optimise>,
 }
 
 /// One axis: keys that vary together.
@@ -54,6 +57,8 @@ pub(super) enum AxisKind {
     Values,
     /// Those with which a search begins.
     Search,
+    /// The points with which the search of an optimum begins.
+    Optimise,
     /// Repetitions of each point.
     Replicates,
     /// Samples of inputs at each point.
@@ -82,6 +87,9 @@ impl Grid {
             let Some(column) = axis.columns.iter().find(is_set) else { continue };
             let (by, allowed) = match axis.kind {
                 AxisKind::Meshes => ("solver.meshes", "solver.meshes=[4, 8]".to_owned()),
+                AxisKind::Optimise => {
+                    (OPTIMISE, format!("{OPTIMISE}.over={{\"{}\": [low, high], …}}", name(column)))
+                }
                 AxisKind::Samples => (SAMPLES, format!("{SAMPLES}.of={{\"{}\": …}}", name(column))),
                 AxisKind::Replicates => (REPLICATES, format!("replicates.{}=[…]", name(column))),
                 AxisKind::Values | AxisKind::Search => {

@@ -13,7 +13,7 @@ use crate::platform::error::InputError;
 use crate::study::column::{self, Column};
 use crate::study::filter::Filter;
 use crate::study::search::{Search, is_search};
-use crate::study::{REPLICATES, SAMPLES, range};
+use crate::study::{OPTIMISE, REPLICATES, SAMPLES, range};
 
 /// What an axis must look like, for errors.
 const AXIS: &str = "a list of values; {\"from\", \"to\", and \"steps\" or \"step\", \"spacing\"}; or \
@@ -54,6 +54,15 @@ impl Grid {
                 }
             }
         }
+        let optimise = tree.get(OPTIMISE);
+        let beside = members.iter().find(|_| optimise.is_some());
+        if let Some((name, value)) = beside {
+            let allowed = "what varies under optimise.over, words and whole numbers too; replicates and samples repeat \
+                           each point";
+            let path = format!("grid.{name}");
+            return Err(context.source.error(&path, value, "is given beside optimise", allowed));
+        }
+        grid.read_optimise(optimise, context)?;
         grid.read_samples(tree.get(SAMPLES), context)?;
         grid.read_replicates(tree.get(REPLICATES), context)?;
         grid.read_meshes(tree.get("solver").and_then(|solver| solver.get("meshes")), context)?;
@@ -173,6 +182,17 @@ impl Grid {
         }
         self.columns.push(column);
         Ok(self.columns.len() - 1)
+    }
+
+    /// Reads one value of a column.
+    pub(in crate::study) fn value_of(
+        &self,
+        column: usize,
+        json: &Json,
+        path: &str,
+        context: Context<'_>,
+    ) -> Result<Value, InputError> {
+        value(&self.columns[column], json, path, context)
     }
 
     /// Reads the single points.

@@ -10,7 +10,7 @@
 use billow_solver::platform::random::{hash, unit};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::distribution::{normal_part_below, normal_quantile};
+use crate::surrogate::normal;
 
 /// Samples that the Sobol sequence has.
 pub(super) const MAX_SOBOL: usize = 1 << 16;
@@ -85,10 +85,10 @@ pub(super) fn correlate(
     }
     let lower = Cholesky::new(matrix)?.l();
     for point in points {
-        let normal = DVector::from_iterator(inputs, point.iter().map(|p| normal_quantile(*p)));
+        let normal = DVector::from_iterator(inputs, point.iter().map(|p| normal::quantile(*p)));
         let normal = &lower * normal;
         for (p, x) in point.iter_mut().zip(normal.iter()) {
-            *p = normal_part_below(*x).clamp(f64::EPSILON, 1.0 - f64::EPSILON);
+            *p = normal::part_below(*x).clamp(f64::EPSILON, 1.0 - f64::EPSILON);
         }
     }
     Some(())

@@ -9,13 +9,14 @@
 //!                 s² of the samples: that of the means of their r runs, less s² within/r
 //! ```
 //!
-//! Quantiles are in `quantile.rs`, the parts of the inputs in `parts.rs`.
+//! Quantiles are in `quantile.rs`, what each input makes in `importance.rs`.
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
 use super::{bounds, parameters, parameters_of};
+use crate::analysis::compare;
 use crate::analysis::replicates::{Condensed, finest, point_key, rows_of_points, source};
 use crate::analysis::values::measured;
 use crate::input::units::DisplayUnit;
@@ -26,9 +27,11 @@ use crate::job::result_limit::{ResultLimit, Safety};
 use crate::job::row::{ColumnId, HEADLINE};
 use crate::store::table::{Column, Table};
 
+mod importance;
 mod parts;
 mod quantile;
 
+pub use importance::Importance;
 pub use parts::Part;
 pub use quantile::Quantile;
 
@@ -79,19 +82,19 @@ pub struct Spread {
     pub deviation: f64,
     /// What makes it, the largest first, as parts of its square: the samples, replicates, mesh error, assumed values.
     pub budget: Vec<Part>,
-    /// What makes the spread of the samples, the largest first, as parts of its square: each input, and the rest.
-    pub inputs: Vec<Part>,
+    /// Which input makes the spread of the samples.
+    pub inputs: Importance,
     /// What is not known, and why.
     pub without: Vec<String>,
 }
 
 impl Tolerance {
-    /// What samples say of every point; none without samples.
+    /// What samples say of every point; none without samples. `sampled` are the inputs, and whether they are independent.
     pub fn all(
         table: &Table,
         limits: &[ResultLimit],
         replicates: &[String],
-        sampled: &[String],
+        (sampled, independent): (&[String], bool),
     ) -> Vec<Self> {
         if sampled.is_empty() {
             return Vec::new();
@@ -106,7 +109,8 @@ impl Tolerance {
         let of = |point: usize| {
             let (nearest, parameters) =
                 (points.runs[point].worst_margin(table), parameters_of(&points.table, point));
-            Self::of(table, (&all[point], nearest), parameters, (limits, &measures), &inputs)
+            let inputs = (inputs.as_slice(), independent);
+            Self::of(table, (&all[point], nearest), parameters, (limits, &measures), inputs)
         };
         points.feasible().map(of).collect()
     }
@@ -117,22 +121,26 @@ impl Tolerance {
         (rows, nearest): (&[usize], Option<(f64, String, usize)>),
         parameters: Vec<(String, Value, DisplayUnit)>,
         (limits, measures): (&[ResultLimit], &[ColumnId]),
-        inputs: &[&Column],
+        inputs: (&[&Column], bool),
     ) -> Self {
         let mut ended = finest(table, rows);
         ended.retain(|row| table.status(*row) != Some(Status::Pending));
         let count = |wanted| ended.iter().filter(|row| table.safety(**row) == Some(wanted)).count();
         let [safe, uncertain, not_safe] = Safety::ALL.map(count);
         let of = if limits.is_empty() { 0 } else { ended.len() };
-        let samples = of_samples(inputs, &ended).len();
+        let samples = of_samples(inputs.0, &ended).len();
         let met = |met: usize| Proportion { met, of };
         let done = |row: &usize| table.status(*row) == Some(Status::Done);
         let done: Vec<usize> = ended.iter().copied().filter(done).collect();
-        let trusted = |row: &usize| table.is_trusted(*row);
-        let trusted: Vec<usize> = done.iter().copied().filter(trusted).collect();
-        let measured = if trusted.is_empty() { &done } else { &trusted };
-        let spread =
-            |measure: &ColumnId| Spread::of(table, table.column(measure.name())?, measured, inputs);
+        let measured = believed(table, &done);
+        let spread = |measure: &ColumnId| {
+            Spread::of(
+                table,
+                table.column(measure.name())?,
+                measured.as_deref().unwrap_or(&done),
+                inputs,
+            )
+        };
         let with_result = if limits.is_empty() { done.len() } else { safe + uncertain + not_safe };
         let possible = met(of.saturating_sub(not_safe)).wilson_of(samples);
         let job = |row: usize| table.column("job").map(|jobs| jobs.cells[row].to_string());
@@ -148,6 +156,40 @@ impl Tolerance {
             measures: measures.iter().filter_map(spread).collect(),
         }
     }
+}
+
+/// Which parameter makes the spread of each measure over all points of a grid; none of a study with samples, and where too
+/// few points or parameters vary.
+pub fn of_grid(
+    table: &Table,
+    limits: &[ResultLimit],
+    replicates: &[String],
+) -> Vec<(String, Importance)> {
+    let rows: Vec<usize> = (0..table.rows()).collect();
+    let varied = table.parameters().filter(|column| !replicates.contains(&column.name));
+    let inputs: Vec<&Column> =
+        varied.filter(|column| compare::values(column, &rows).len() > 1).collect();
+    if inputs.len() < 2 {
+        return Vec::new();
+    }
+    let points = rows_of_points(table, &rows, replicates);
+    let done: Vec<usize> = points
+        .iter()
+        .flat_map(|rows| finest(table, rows))
+        .filter(|row| table.status(*row) == Some(Status::Done))
+        .collect();
+    let rows = believed(table, &done).unwrap_or(done);
+    let of = |measure: ColumnId| {
+        let spread = Spread::of(table, table.column(measure.name())?, &rows, (&inputs, true))?;
+        (!spread.inputs.parts.is_empty()).then_some((spread.measure, spread.inputs))
+    };
+    measures(table, limits).into_iter().filter_map(of).collect()
+}
+
+/// Of these rows those that can be trusted; `None` where none can.
+fn believed(table: &Table, rows: &[usize]) -> Option<Vec<usize>> {
+    let trusted: Vec<usize> = rows.iter().copied().filter(|row| table.is_trusted(*row)).collect();
+    (!trusted.is_empty()).then_some(trusted)
 }
 
 /// The runs of each sample among these rows.
@@ -175,7 +217,12 @@ fn measures(table: &Table, limits: &[ResultLimit]) -> Vec<ColumnId> {
 
 impl Spread {
     /// The spread of a measure over these rows; `None` without two values.
-    fn of(table: &Table, column: &Column, rows: &[usize], inputs: &[&Column]) -> Option<Self> {
+    fn of(
+        table: &Table,
+        column: &Column,
+        rows: &[usize],
+        (inputs, independent): (&[&Column], bool),
+    ) -> Option<Self> {
         let values_of = source(table, column);
         let value = |row: &usize| measured(table, values_of, *row);
         let with_value: Vec<usize> =
@@ -216,9 +263,10 @@ impl Spread {
         let all: f64 = variances.iter().map(|(_, variance)| variance).sum();
         let part = |(name, variance): (&str, f64)| Part::new(name, variance / all);
         let budget = variances.into_iter().filter(|(_, variance)| *variance > 0.0).map(part);
-        let inputs = parts::of_inputs(inputs, &first, &means).unwrap_or_else(|problem| {
+        let inputs = Importance::of(inputs, &first, &means, independent);
+        let inputs = inputs.unwrap_or_else(|problem| {
             without.push(problem);
-            Vec::new()
+            Importance::default()
         });
         Some(Self {
             measure: column.name.clone(),
@@ -226,7 +274,7 @@ impl Spread {
             quantiles: quantiles.to_vec(),
             deviation: libm::sqrt(all),
             budget: parts::largest_first(budget.collect()),
-            inputs: parts::largest_first(inputs),
+            inputs,
             without,
         })
     }

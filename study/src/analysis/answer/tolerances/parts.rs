@@ -13,15 +13,10 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::Serialize;
 
 use super::moments;
-use crate::analysis::values::canonical;
-use crate::input::value::Value;
 use crate::job::proportion::Z;
-use crate::store::table::Column;
 
 /// Groups of samples that the jackknife leaves out in turn, at most. Chosen: more change an end by a few per cent.
 const GROUPS: usize = 64;
-/// Samples for each input below which the answer has no parts. Chosen: the intervals are then wider than the parts.
-const SAMPLES_PER_INPUT: usize = 5;
 /// What the inputs do not make.
 const UNEXPLAINED: &str = "not explained by ranks";
 
@@ -34,11 +29,13 @@ pub struct Part {
     pub part: f64,
     /// The interval of the part of an input, 95 %.
     pub between: Option<[f64; 2]>,
+    /// What an input makes together with others too, and its interval: its total index.
+    pub total: Option<(f64, [f64; 2])>,
 }
 
 impl Part {
     pub(super) fn new(name: &str, part: f64) -> Self {
-        Self { name: name.to_owned(), part, between: None }
+        Self { name: name.to_owned(), part, between: None, total: None }
     }
 }
 
@@ -47,54 +44,30 @@ pub(super) fn largest_first(mut parts: Vec<Part>) -> Vec<Part> {
     parts
 }
 
-/// The part of each input in the spread of the samples, and the rest: `values` of a measure, one at each row.
-///
-/// # Errors
-/// Why there are none.
-pub(super) fn of_inputs(
-    inputs: &[&Column],
-    rows: &[usize],
-    values: &[f64],
-) -> Result<Vec<Part>, String> {
-    let needed = SAMPLES_PER_INPUT * inputs.len().max(2);
-    if rows.len() < needed {
-        return Err(format!("what each input makes: {} samples, {needed} needed", rows.len()));
-    }
-    let columns: Vec<Vec<f64>> = inputs.iter().map(|input| numbers(input, rows)).collect();
-    let all: Vec<usize> = (0..rows.len()).collect();
-    let parts = pratt(&columns, values, &all)
-        .ok_or("what each input makes: the ranks do not separate them")?;
-    let groups = rows.len().min(GROUPS);
+/// The part of each input in the spread of the samples by ranks, and the rest: `values` of a measure, one for each of
+/// the numbers of an input. `None` where the ranks do not separate them.
+pub(super) fn of_ranks(inputs: &[(String, Vec<f64>)], values: &[f64]) -> Option<Vec<Part>> {
+    let columns: Vec<Vec<f64>> = inputs.iter().map(|(_, numbers)| numbers.clone()).collect();
+    let all: Vec<usize> = (0..values.len()).collect();
+    let parts = pratt(&columns, values, &all)?;
+    let groups = values.len().min(GROUPS);
     let without = |group: usize| {
         let kept: Vec<usize> = all.iter().copied().filter(|i| i % groups != group).collect();
         pratt(&columns, values, &kept)
     };
     let jackknife: Option<Vec<Vec<f64>>> = (0..groups).map(without).collect();
-    let of_input = |(index, input): (usize, &&Column)| {
+    let of_input = |(index, (name, _)): (usize, &(String, Vec<f64>))| {
         let between = jackknife.as_ref().map(|jackknife| {
             let of: Vec<f64> = jackknife.iter().map(|parts| parts[index]).collect();
             let g = groups as f64;
             let half = Z * libm::sqrt(moments(&of).1 / g) * (g - 1.0);
             [parts[index] - half, parts[index] + half].map(|end| end.clamp(0.0, 1.0))
         });
-        Part { between, ..Part::new(&input.name, parts[index]) }
+        Part { between, ..Part::new(name, parts[index]) }
     };
     let mut found: Vec<Part> = inputs.iter().enumerate().map(of_input).collect();
     found.push(Part::new(UNEXPLAINED, (1.0 - parts.iter().sum::<f64>()).max(0.0)));
-    Ok(found)
-}
-
-/// The values of an input as numbers; words by their order.
-fn numbers(input: &Column, rows: &[usize]) -> Vec<f64> {
-    let mut words: Vec<String> = rows.iter().map(|row| canonical(&input.cells[*row])).collect();
-    words.sort();
-    words.dedup();
-    let number = |row: &usize| match &input.cells[*row] {
-        Value::Number(number) => *number,
-        Value::Integer(number) => *number as f64,
-        other => words.binary_search(&canonical(other)).unwrap_or(0) as f64,
-    };
-    rows.iter().map(number).collect()
+    Some(found)
 }
 
 /// Standardised ranks of the values at these places, equal values with their mean rank; `None` where all are equal.

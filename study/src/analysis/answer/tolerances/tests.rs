@@ -24,20 +24,19 @@ fn names(names: &[&str]) -> Vec<String> {
 #[test]
 fn parts_are_those_of_the_variance_of_a_sum() {
     let (table, inputs) = (table(400), names(&["a", "b"]));
-    let found = Tolerance::all(&table, &fixture::limits(13.0), &inputs, &inputs);
+    let found = Tolerance::all(&table, &fixture::limits(13.0), &inputs, (&inputs, true));
     let [point] = found.as_slice() else { panic!("{found:?}") };
     let spread = point.measures.iter().find(|one| one.measure == "peak_vz").unwrap();
     // Var = 9/12 + 1/12 + 0.01/12.
-    let part = |name: &str| spread.inputs.iter().find(|part| part.name == name).unwrap();
+    let part = |name: &str| spread.inputs.parts.iter().find(|part| part.name == name).unwrap();
     for (name, exact) in [("a", 0.899), ("b", 0.0999)] {
         let Part { part, between, .. } = part(name).clone();
         let [low, high] = between.unwrap();
         assert!((part - exact).abs() < 0.04, "{name}: {part}");
         assert!(low < part && part < high && high - low < 0.2, "{name}: {low} {high}");
     }
-    for parts in [&spread.inputs, &spread.budget] {
-        assert!((parts.iter().map(|part| part.part).sum::<f64>() - 1.0).abs() < 1e-12);
-    }
+    let budget: f64 = spread.budget.iter().map(|part| part.part).sum();
+    assert!((budget - 1.0).abs() < 1e-12);
     assert!((spread.deviation - libm::sqrt(10.01 / 12.0)).abs() < 0.05);
     assert_eq!(point.safe.of, 400);
     let exact = point.safe.met as f64 / 400.0;
@@ -86,7 +85,7 @@ fn runs_without_a_result_widen_the_interval_and_replicates_do_not_narrow_it() {
     };
     let table = fixture::table_of("job a seed status peak_vz safety", (0..20).map(row));
     let limits = fixture::limits(30.0);
-    let found = Tolerance::all(&table, &limits, &names(&["a", "seed"]), &names(&["a"]));
+    let found = Tolerance::all(&table, &limits, &names(&["a", "seed"]), (&names(&["a"]), true));
     let [point] = found.as_slice() else { panic!("{found:?}") };
     assert_eq!((point.runs, point.samples, point.without_result), (20, 10, 4));
     assert_eq!(point.safe, Proportion { met: 16, of: 20 });
@@ -98,8 +97,8 @@ fn runs_without_a_result_widen_the_interval_and_replicates_do_not_narrow_it() {
 #[test]
 fn few_samples_tell_no_parts() {
     let (table, inputs) = (table(9), names(&["a", "b"]));
-    let found = Tolerance::all(&table, &[], &inputs, &inputs);
+    let found = Tolerance::all(&table, &[], &inputs, (&inputs, true));
     let spread = &found[0].measures.last().unwrap();
-    assert_eq!((spread.inputs.len(), spread.budget[0].name.as_str()), (0, "samples"));
+    assert_eq!((spread.inputs.parts.len(), spread.budget[0].name.as_str()), (0, "samples"));
     assert!(spread.without[2].contains("9 samples, 10 needed"), "{:?}", spread.without);
 }

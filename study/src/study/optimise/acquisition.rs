@@ -1,0 +1,303 @@
+//! Which points a search runs next.
+//!
+//! ```text
+//! one measure    a(x) = ln EI(x) + Σ_j ln P(margin_j(x) > 0)          J. R. Gardner et al. (2014)
+//!                EI = (b − m) Φ(u) + s φ(u),  u = (b − m)/s            J. Močkus (1975); m, s of the surrogate at x
+//!                b: the smallest m among the points that probably keep the limits; without one EI = 1
+//! two measures   y = max_k w_k y_k + 0.05 Σ_k w_k y_k, y_k from 0 to 1, other weights w for each point of a batch: ParEGO
+//!                (J. Knowles, 2006)
+//! a batch        each point is taken as known, at its mean, before the next is chosen (D. Ginsbourger et al., 2010)
+//! ```
+//! A run that failed, or has no fold pattern, keeps no limit, and counts as the worst of the others.
+
+use std::collections::BTreeMap;
+use std::collections::hash_map::DefaultHasher;
+use std::hash::{Hash, Hasher};
+use std::sync::{Mutex, PoisonError};
+
+use billow_solver::platform::random::{hash, unit};
+
+use super::{Optimise, Trial, sobol};
+use crate::input::value::Value;
+use crate::surrogate::{Surrogate, normal};
+
+/// Points at which a(x) is computed: of the Sobol' sequence, and near the best points.
+const SPREAD: usize = 400;
+const NEAR: usize = 200;
+/// Distances from the best points, as parts of a range.
+const DISTANCES: [f64; 3] = [0.1, 0.03, 0.01];
+/// Best points near which it is computed.
+const BEST: usize = 4;
+/// Weight of the sum of both measures.
+const SUM: f64 = 0.05;
+/// Margin of a point that keeps no limit.
+const FAILED: f64 = -1.0;
+
+/// What was proposed before for the same trials: a plan asks for each generation again whenever it is replayed.
+static PROPOSED: Mutex<BTreeMap<u64, Vec<Vec<Value>>>> = Mutex::new(BTreeMap::new());
+
+/// The next points: at most `batch`, fewer where a range of words and whole numbers has no others.
+pub(super) fn proposed(
+    optimise: &Optimise,
+    trials: &[Trial],
+    batch: usize,
+    generation: u32,
+) -> Vec<Vec<Value>> {
+    let mut key = DefaultHasher::new();
+    (format!("{optimise:?}{trials:?}"), batch, generation).hash(&mut key);
+    let key = key.finish();
+    let known = || PROPOSED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(proposed) = known().get(&key) {
+        return proposed.clone();
+    }
+    let chosen = Search { optimise, trials, generation }.batch(batch);
+    known().insert(key, chosen.clone());
+    chosen
+}
+
+struct Search<'a> {
+    optimise: &'a Optimise,
+    trials: &'a [Trial],
+    generation: u32,
+}
+
+/// The surrogates of one point of a batch.
+#[derive(Clone)]
+struct Surrogates {
+    measure: Option<Surrogate>,
+    margins: Vec<Surrogate>,
+    /// b.
+    best: Option<f64>,
+}
+
+impl Search<'_> {
+    fn batch(&self, batch: usize) -> Vec<Vec<Value>> {
+        let margins = self.margins();
+        let two = self.optimise.minimise.len() > 1;
+        let mut surrogates = self.surrogates(&margins, 0);
+        let mut believed: Vec<Vec<f64>> = Vec::new();
+        let mut chosen: Vec<Vec<Value>> = Vec::new();
+        for number in 0..batch {
+            if two && number > 0 {
+                surrogates = self.surrogates(&margins, number);
+                for place in &believed {
+                    surrogates = surrogates.believing(place);
+                }
+            }
+            let Some(values) = self.best(&surrogates, number, &chosen) else { break };
+            let place = self.place(&values);
+            surrogates = surrogates.believing(&place);
+            believed.push(place);
+            chosen.push(values);
+        }
+        chosen
+    }
+
+    fn place(&self, values: &[Value]) -> Vec<f64> {
+        let pairs = self.optimise.coordinates.iter().zip(values);
+        pairs.map(|(of, value)| of.place(value)).collect()
+    }
+
+    fn words(&self) -> Vec<bool> {
+        self.optimise.coordinates.iter().map(crate::surrogate::Coordinate::is_word).collect()
+    }
+
+    /// The surrogate of the margin of each limit that some points keep and others do not, or that differs.
+    fn margins(&self) -> Vec<Surrogate> {
+        let limits = self.trials.first().map_or(0, |trial| trial.margins.len());
+        let points: Vec<Vec<f64>> = self.trials.iter().map(|trial| trial.place.clone()).collect();
+        let of = |limit: usize| {
+            let values: Vec<f64> =
+                self.trials.iter().map(|trial| trial.margins[limit].unwrap_or(FAILED)).collect();
+            Surrogate::fit(&points, &values, &self.words())
+        };
+        (0..limits).filter_map(of).collect()
+    }
+
+    /// The surrogates for a point of the batch.
+    fn surrogates(&self, margins: &[Surrogate], number: usize) -> Surrogates {
+        let values = self.scalar(number);
+        let worst = values.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
+        let points: Vec<Vec<f64>> = self.trials.iter().map(|trial| trial.place.clone()).collect();
+        let known: Vec<f64> = values.iter().map(|value| value.unwrap_or(worst)).collect();
+        let measure =
+            if worst.is_finite() { Surrogate::fit(&points, &known, &self.words()) } else { None };
+        let mut found = Surrogates { measure, margins: margins.to_vec(), best: None };
+        let kept = self.trials.iter().filter(|trial| trial.keeps_limits());
+        let means = kept.filter_map(|trial| Some(found.measure.as_ref()?.at(&trial.place).0));
+        found.best = means.reduce(f64::min);
+        found
+    }
+
+    /// What becomes small, as one number for each trial.
+    fn scalar(&self, number: usize) -> Vec<Option<f64>> {
+        let of = |trial: &Trial, k: usize| trial.measures[k].filter(|_| trial.is_measured());
+        if self.optimise.minimise.len() == 1 {
+            return self.trials.iter().map(|trial| of(trial, 0)).collect();
+        }
+        // Both ends, then halves: 0, 1, ½, ¼, ¾, …
+        let draw = (self.generation as usize * self.optimise.batch + number) as u64;
+        let first = match draw {
+            0 => 0.0,
+            1 => 1.0,
+            other => halves(other - 1),
+        };
+        let weights = [first, 1.0 - first];
+        let scaled = |k: usize| {
+            let values = || self.trials.iter().filter_map(|trial| of(trial, k));
+            let low = values().fold(f64::INFINITY, f64::min);
+            let high = values().fold(f64::NEG_INFINITY, f64::max);
+            move |value: f64| if high > low { (value - low) / (high - low) } else { 0.0 }
+        };
+        let scaled = [scaled(0), scaled(1)];
+        let scalar = |trial: &Trial| {
+            let parts = [0, 1].map(|k| of(trial, k).map(|value| weights[k] * scaled[k](value)));
+            let [a, b] = [parts[0]?, parts[1]?];
+            Some(a.max(b) + SUM * (a + b))
+        };
+        self.trials.iter().map(scalar).collect()
+    }
+
+    /// The point where the surrogates expect most, different from all before.
+    fn best(
+        &self,
+        surrogates: &Surrogates,
+        number: usize,
+        chosen: &[Vec<Value>],
+    ) -> Option<Vec<Value>> {
+        let is_new = |values: &Vec<Value>| {
+            !chosen.contains(values) && self.trials.iter().all(|trial| trial.values != *values)
+        };
+        let score = |values: &Vec<Value>| surrogates.expects(&self.place(values));
+        let mut best: Option<(f64, Vec<Value>)> = None;
+        let mut consider = |values: Vec<Value>| {
+            if is_new(&values) {
+                let score = score(&values);
+                if best.as_ref().is_none_or(|(known, _)| score > *known) {
+                    best = Some((score, values));
+                }
+            }
+        };
+        let seed = hash(u64::from(self.optimise.seed), 1 + u64::from(self.generation));
+        let seed = hash(seed, number as u64);
+        #[expect(clippy::cast_possible_truncation, reason = "any bits are a seed")]
+        let spread = sobol(self.optimise.columns.len(), seed as u32).take(SPREAD);
+        spread.for_each(|point| consider(self.optimise.values(&point)));
+        for (k, centre) in self.centres(surrogates).iter().cycle().take(NEAR).enumerate() {
+            let distance = DISTANCES[k % DISTANCES.len()];
+            consider(self.near(centre, distance, hash(seed, k as u64)));
+        }
+        // From the best on, in ever smaller circles.
+        for round in 0..NEAR as u64 {
+            let Some((_, values)) = &best else { break };
+            let centre = self.place(values);
+            let distance = 0.1 * libm::exp(-4.0 * round as f64 / NEAR as f64);
+            let values = self.near(&centre, distance, hash(!seed, round));
+            if is_new(&values) {
+                let score = score(&values);
+                if best.as_ref().is_some_and(|(known, _)| score > *known) {
+                    best = Some((score, values));
+                }
+            }
+        }
+        best.map(|(_, values)| values)
+    }
+
+    /// The places of the best points so far: those that keep the limits by their measure, then those nearest to it.
+    fn centres(&self, surrogates: &Surrogates) -> Vec<Vec<f64>> {
+        let worst = |trial: &Trial| {
+            trial.margins.iter().map(|m| m.unwrap_or(FAILED)).fold(f64::INFINITY, f64::min)
+        };
+        let key = |trial: &Trial| match (&surrogates.measure, trial.keeps_limits()) {
+            (Some(measure), true) => (0, measure.at(&trial.place).0),
+            _ => (1, -worst(trial)),
+        };
+        let mut all: Vec<((i32, f64), &Trial)> = self.trials.iter().map(|t| (key(t), t)).collect();
+        all.sort_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        all.into_iter().take(BEST).map(|(_, trial)| trial.place.clone()).collect()
+    }
+
+    /// A point near a place: each number moves by a normal distribution, a word changes in one of eight cases.
+    fn near(&self, centre: &[f64], distance: f64, seed: u64) -> Vec<Value> {
+        let moved = |(j, of): (usize, &crate::surrogate::Coordinate)| {
+            let draw = unit(hash(seed, j as u64 + 1));
+            match of {
+                crate::surrogate::Coordinate::Word(words) => {
+                    let count = words.len() as f64;
+                    let place = if draw < 0.125 { draw / 0.125 } else { (centre[j] + 0.5) / count };
+                    super::value(of, place)
+                }
+                crate::surrogate::Coordinate::Whole([low, high]) => {
+                    // The middle of the part of a whole number, which moves by one in some of the draws.
+                    let count = high - low + 1.0;
+                    let middle = (centre[j] * (high - low) + 0.5) / count;
+                    let step = distance.max(0.7 / count) * normal::quantile(clamped(draw));
+                    super::value(of, middle + step)
+                }
+                _ => super::value(of, centre[j] + distance * normal::quantile(clamped(draw))),
+            }
+        };
+        self.optimise.coordinates.iter().enumerate().map(moved).collect()
+    }
+}
+
+impl Surrogates {
+    fn believing(&self, place: &[f64]) -> Self {
+        let believing = |of: &Surrogate| of.believing(place).unwrap_or_else(|| of.clone());
+        Self {
+            measure: self.measure.as_ref().map(believing),
+            margins: self.margins.iter().map(believing).collect(),
+            best: self.best,
+        }
+    }
+
+    /// a(x).
+    fn expects(&self, place: &[f64]) -> f64 {
+        let kept = |margin: &Surrogate| {
+            let (mean, deviation) = margin.at(place);
+            log_part_below(mean / deviation.max(1e-9))
+        };
+        let kept: f64 = self.margins.iter().map(kept).sum();
+        let (Some(measure), Some(best)) = (&self.measure, self.best) else { return kept };
+        let (mean, deviation) = measure.at(place);
+        let deviation = deviation.max(1e-12 * (1.0 + best.abs()));
+        kept + log_improvement((best - mean) / deviation) + libm::log(deviation)
+    }
+}
+
+/// ln Φ(u), also where Φ is 0 to f64.
+fn log_part_below(u: f64) -> f64 {
+    if u > -30.0 {
+        libm::log(normal::part_below(u))
+    } else {
+        -0.5 * u * u - libm::log(-u) - LOG_ROOT_OF_TAU
+    }
+}
+
+/// ln √(2π).
+const LOG_ROOT_OF_TAU: f64 = 0.918_938_533_204_672_8;
+
+/// ln (u Φ(u) + φ(u)): by its series where the sum loses its digits (S. Ament et al., 2023).
+fn log_improvement(u: f64) -> f64 {
+    let density = -0.5 * u * u - LOG_ROOT_OF_TAU;
+    if u > -8.0 {
+        libm::log(u * normal::part_below(u) + libm::exp(density))
+    } else {
+        density - 2.0 * libm::log(-u) + libm::log(1.0 - 3.0 / (u * u))
+    }
+}
+
+/// ½, ¼, ¾, ⅛, …: the bits of a number behind the point, in reverse.
+fn halves(mut number: u64) -> f64 {
+    let (mut value, mut bit) = (0.0, 0.5);
+    while number > 0 {
+        value += bit * (number & 1) as f64;
+        bit *= 0.5;
+        number >>= 1;
+    }
+    value
+}
+
+fn clamped(draw: f64) -> f64 {
+    draw.clamp(f64::EPSILON, 1.0 - f64::EPSILON)
+}

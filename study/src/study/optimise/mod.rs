@@ -1,0 +1,115 @@
+//! The section `optimise` of a study: a search of the point with the smallest measure that keeps the limits.
+//!
+//! ```text
+//! first generation:  points of the Sobol' sequence, 2 (inputs + 1), at least 8
+//! next generation:   a batch of points, each the one where a surrogate expects most (acquisition.rs), until the budget is
+//!                    used up
+//! then:              the best point on two finer meshes; where it does not keep the limits there, the next best
+//! ```
+//! A point counts by the median of its runs, and keeps a limit if every run does, its known uncertainty counted.
+
+mod acquisition;
+mod read;
+mod replay;
+
+use std::cmp::Ordering;
+
+use crate::input::value::Value;
+use crate::job::row::ColumnId;
+use crate::surrogate::Coordinate;
+
+pub(crate) use replay::Replay;
+pub use replay::{Optimum, Trial};
+
+/// Points of the first generation at least.
+const MIN_FIRST: usize = 8;
+
+/// A search of an optimum.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Optimise {
+    /// What it makes small: one measure, or two of which neither is sacrificed.
+    pub minimise: Vec<ColumnId>,
+    /// Positions of the columns of the grid that it varies.
+    pub columns: Vec<usize>,
+    /// The range of each.
+    pub coordinates: Vec<Coordinate>,
+    /// Number of points in all.
+    pub budget: usize,
+    /// Number of points of a generation after the first.
+    pub batch: usize,
+    /// Another seed gives other points.
+    pub seed: u32,
+}
+
+impl Optimise {
+    /// Number of points of the first generation.
+    pub fn first(&self) -> usize {
+        (2 * (self.columns.len() + 1)).max(MIN_FIRST).min(self.budget)
+    }
+
+    /// The values of a point of the unit cube.
+    fn values(&self, point: &[f64]) -> Vec<Value> {
+        self.coordinates.iter().zip(point).map(|(of, place)| value(of, *place)).collect()
+    }
+
+    /// The first points: those of the Sobol' sequence, each once.
+    pub fn first_values(&self) -> Vec<Vec<Value>> {
+        let mut all: Vec<Vec<Value>> = Vec::new();
+        for values in sobol(self.columns.len(), self.seed)
+            .map(|point| self.values(&point))
+            .take(64 * self.budget)
+        {
+            if all.len() == self.first() {
+                break;
+            }
+            if !all.contains(&values) {
+                all.push(values);
+            }
+        }
+        all
+    }
+}
+
+/// Points of the scrambled Sobol' sequence.
+fn sobol(inputs: usize, seed: u32) -> impl Iterator<Item = Vec<f64>> {
+    #[expect(clippy::cast_possible_truncation, reason = "at most 16 inputs")]
+    let inputs = inputs as u32;
+    let point = move |k| (0..inputs).map(|j| f64::from(sobol_burley::sample(k, j, seed))).collect();
+    (0..1 << 16).map(point)
+}
+
+/// The value at a place from 0 to 1 of a range: a number with four digits, a whole number, a word.
+fn value(of: &Coordinate, place: f64) -> Value {
+    let place = place.clamp(0.0, 1.0);
+    let short = |number: f64, [low, high]: [f64; 2]| {
+        let short: f64 = format!("{number:.3e}").parse().unwrap_or(number);
+        Value::Number(short.clamp(low, high))
+    };
+    match of {
+        Coordinate::Linear([low, high]) => short(low + place * (high - low), [*low, *high]),
+        Coordinate::Log([low, high]) => short(low * libm::pow(high / low, place), [*low, *high]),
+        Coordinate::Whole([low, high]) => {
+            // Each whole number has an equal part of the range.
+            let number = libm::floor(low + place * (high - low + 1.0)).min(*high);
+            #[expect(clippy::cast_possible_truncation, reason = "whole numbers of a key")]
+            Value::Integer(number as i64)
+        }
+        Coordinate::Word(words) => {
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "below the number of words"
+            )]
+            let position = (place * words.len() as f64) as usize;
+            words[position.min(words.len() - 1)].clone()
+        }
+    }
+}
+
+/// The order of two measures, those that are not known last.
+fn by_measure(a: Option<f64>, b: Option<f64>) -> Ordering {
+    a.unwrap_or(f64::INFINITY).total_cmp(&b.unwrap_or(f64::INFINITY))
+}
+
+#[cfg(test)]
+mod tests;

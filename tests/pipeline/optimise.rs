@@ -1,0 +1,109 @@
+//! The search of an optimum: against a closed form, deterministic, resumed, extended, with two measures, and its bad input.
+
+use serde_json::{Value, json};
+
+use crate::support::{TestFolder, json_of, paper_design};
+
+/// A piston that a tank of gas fills within a second: its pressure at the end falls with the flow, its speed rises.
+fn study(budget: usize) -> Value {
+    json!({
+        "design": paper_design(2),
+        "gas": {"heat_transfer": "isothermal"},
+        "solver": {"model": "piston", "end_time": "1 s"},
+        "limits": {"final_pressure": "> 500 Pa"},
+        "optimise": {
+            "minimise": "final_pressure",
+            "over": {"mass_flow_rate": ["2 g/s", "8 g/s"], "film.temperature": ["280 K", "310 K"]},
+            "budget": budget,
+        },
+    })
+}
+
+const RUN: [&str; 4] = ["run", "grid.json", "-q", "--no-report"];
+
+/// Rows as job and hash, in plan order.
+fn bits(rows: &[Value]) -> Vec<[Value; 2]> {
+    rows.iter().map(|row| ["job", "content_hash"].map(|name| row[name].clone())).collect()
+}
+
+#[test]
+fn the_optimum_of_a_piston_is_at_its_limit() {
+    let folder = TestFolder::new(&study(24));
+    let answer = json_of(&folder, &RUN);
+    let found = &answer["optimum"];
+    assert_eq!(
+        (&found["points"], &found["minimise"]),
+        (&json!([24, 24]), &json!(["final_pressure"]))
+    );
+    // p = ṁ (1 s) R T/V: the smallest value that keeps the limit is the limit.
+    let best = &found["best"][0];
+    let value = best["measures"][0]["value"].as_f64().unwrap();
+    assert!(value > 500.0 && value < 503.0, "{best}");
+    assert_eq!(best["limit"][0], "final_pressure");
+    let rows = folder.rows("results/grid");
+    assert_eq!(rows.len(), 24);
+    let of_job = rows.iter().find(|row| row["job"] == best["job"]).unwrap();
+    let [flow, temperature, volume] = ["mass_flow_rate", "temperature", "final_volume"]
+        .map(|name| of_job[name].as_f64().unwrap());
+    let exact = flow * 296.803_052 * temperature / volume;
+    assert!((value / exact - 1.0).abs() < 0.01, "{value} {exact}");
+    // What was found after each generation never grows.
+    let course = found["course"].as_array().unwrap();
+    let after: Vec<f64> = course.iter().filter_map(|step| step[1][0].as_f64()).collect();
+    assert!(after.len() > 2 && after.windows(2).all(|pair| pair[1] <= pair[0]), "{after:?}");
+    assert_eq!(course.last().unwrap()[0], 24);
+    let text = folder.stdout(&["run", "grid.json", "--no-report"]);
+    for part in ["answer", "nearest limit final_pressure", "spread evenly", "none was better"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+}
+
+#[test]
+fn threads_a_stop_and_a_larger_budget_change_no_point() {
+    let whole = TestFolder::new(&study(20));
+    whole.stdout(&[&RUN[..], &["--threads", "1"]].concat());
+    let all = bits(&whole.rows("results/grid"));
+    let folder = TestFolder::new(&study(12));
+    folder.stdout(&[&RUN[..], &["--threads", "2"]].concat());
+    assert_eq!(bits(&folder.rows("results/grid")), all[..12]);
+    let more = ["--set", "optimise.budget=20", "--threads", "2"];
+    let answer = json_of(&folder, &[&RUN[..], &more[..]].concat());
+    assert_eq!((answer["ran"].as_u64(), answer["jobs"].as_u64()), (Some(8), Some(20)), "{answer}");
+    assert_eq!(bits(&folder.rows("results/grid")), all);
+    // Another seed tries others.
+    let other = TestFolder::new(&study(12));
+    other.stdout(&[&RUN[..], &["--set", "optimise.seed=2"]].concat());
+    assert_ne!(bits(&other.rows("results/grid")), all[..12]);
+}
+
+#[test]
+fn two_measures_have_a_front_and_failed_points_are_rows() {
+    let mut study = study(24);
+    // One storey has no fold pattern here.
+    study["optimise"] = json!({
+        "minimise": ["peak_vz", "t_90_z_rim"],
+        "over": {"mass_flow_rate": ["1 g/s", "20 g/s"], "M": [1, 3], "chirality": ["same", "alternate"]},
+        "budget": 24, "batch": 8,
+    });
+    study["limits"] = json!({"t_90_z_rim": "< 0.9 s"});
+    let folder = TestFolder::new(&study);
+    let answer = json_of(&folder, &RUN);
+    let best = answer["optimum"]["best"].as_array().unwrap();
+    assert!(best.len() > 4, "{best:?}");
+    let values = |k: usize| -> Vec<f64> {
+        best.iter().map(|one| one["measures"][k]["value"].as_f64().unwrap()).collect()
+    };
+    assert!(values(0).windows(2).all(|pair| pair[0] < pair[1]), "{:?}", values(0));
+    assert!(values(1).windows(2).all(|pair| pair[0] > pair[1]), "{:?}", values(1));
+    let rows = folder.rows("results/grid");
+    let infeasible = rows.iter().filter(|row| row["status"] == "infeasible").count();
+    assert!(
+        rows.len() == 24 && infeasible > 0 && infeasible < 12,
+        "{infeasible} of {}",
+        rows.len()
+    );
+    let text = folder.stdout(&["run", "grid.json", "--no-report"]);
+    assert!(text.contains("the front between peak_vz and t_90_z_rim"), "{text}");
+    let charts = folder.stdout(&["chart", "grid.json", "-q"]);
+    assert!(charts.contains("search.svg"), "{charts}");
+}
