@@ -107,3 +107,82 @@ fn two_measures_have_a_front_and_failed_points_are_rows() {
     let charts = folder.stdout(&["chart", "grid.json", "-q"]);
     assert!(charts.contains("search.svg"), "{charts}");
 }
+
+/// A piston study with this search.
+fn with(optimise: &Value, limits: &Value) -> Value {
+    let mut study = study(8);
+    study["optimise"] = optimise.clone();
+    study["limits"] = limits.clone();
+    study["strategies"] = json!({
+        "ramp": {"inflow": [{"from": "0.1 s", "to": "0.5 s", "mass_flow_rate": "5 g/s"}]},
+        "late": {"inflow": [{"from": "0.5 s", "mass_flow_rate": "1 g/s"}]},
+    });
+    study["strategy"] = json!("ramp");
+    study
+}
+
+#[test]
+fn a_limit_that_is_met_exactly_is_kept() {
+    let optimise =
+        json!({"minimise": "peak_vz", "over": {"mass_flow_rate": ["2 g/s", "8 g/s"]}, "budget": 8});
+    let folder = TestFolder::new(&with(&optimise, &json!({"final_pressure": ">= 0 Pa"})));
+    let answer = json_of(&folder, &RUN);
+    assert_eq!(answer["optimum"]["best"][0]["keeps_limits"], true, "{}", answer["optimum"]);
+}
+
+#[test]
+fn what_changes_no_job_and_what_the_study_refuses_uses_no_budget() {
+    // Preinflation of `ramp` changes nothing in `late`.
+    let optimise = json!({
+        "minimise": "peak_vz", "budget": 24,
+        "over": {"strategies.ramp.preinflation_mass": ["0 g", "0.3 g"], "strategy": ["ramp", "late"]},
+    });
+    let folder = TestFolder::new(&with(&optimise, &json!({})));
+    let answer = json_of(&folder, &RUN);
+    let jobs: std::collections::BTreeSet<String> = folder
+        .rows("results/grid")
+        .iter()
+        .map(|row| row["job"].as_str().unwrap().to_owned())
+        .collect();
+    assert_eq!(answer["optimum"]["points"], json!([24, 24]), "{}", answer["optimum"]);
+    assert_eq!(jobs.len(), 24);
+    // A window that ends before it begins is refused: where the search wants to go, in one corner.
+    let optimise = json!({
+        "minimise": "peak_vz", "budget": 20,
+        "over": {
+            "strategies.ramp.inflow[0].from": ["0.1 s", "0.5 s"],
+            "strategies.ramp.inflow[0].to": ["0.45 s", "1 s"],
+        },
+    });
+    let folder = TestFolder::new(&with(&optimise, &json!({})));
+    let answer = json_of(&folder, &RUN);
+    assert_eq!(answer["optimum"]["points"], json!([20, 20]), "{}", answer["optimum"]);
+    // Four designs are all that there are.
+    let optimise = json!({"minimise": "peak_vz", "over": {"N": [5, 8]}, "budget": 40});
+    let folder = TestFolder::new(&with(&optimise, &json!({})));
+    let text = folder.stdout(&["run", "grid.json", "--no-report"]);
+    assert!(
+        text.contains("4 points tried of 40: all others are refused, or are the same jobs"),
+        "{text}"
+    );
+}
+
+#[test]
+fn the_best_point_is_one_that_keeps_its_limits_on_the_finest_mesh() {
+    let mut study = study(8);
+    study["solver"] = json!({"model": "film", "end_time": "0.2 s"});
+    study["limits"] = json!({"peak_vz": "> 33.5 m/s"});
+    study["optimise"] = json!({"minimise": "peak_vz", "over": {"mass_flow_rate": ["2 g/s", "20 g/s"]}, "budget": 8});
+    let folder = TestFolder::new(&study);
+    let found = json_of(&folder, &RUN)["optimum"].clone();
+    let refuted = found["refuted"].as_array().unwrap();
+    assert!(!refuted.is_empty(), "{found}");
+    let best = &found["best"][0];
+    for (point, keeps) in refuted.iter().map(|one| (one, false)).chain([(best, true)]) {
+        assert_eq!((&point["confirmed_on"], &point["keeps_limits"]), (&json!(4), &json!(keeps)));
+    }
+    let value = |point: &Value| point["measures"][0]["value"].as_f64().unwrap();
+    assert!(refuted.iter().all(|one| value(one) < value(best)), "{found}");
+    let text = folder.stdout(&["run", "grid.json", "--no-report"]);
+    assert!(text.contains("better, but not on the finest mesh"), "{text}");
+}

@@ -36,6 +36,20 @@ pub fn mixed() -> Value {
     study("0.05 s", &grid)
 }
 
+/// The search of an optimum, each of its 12 points with three samples of film: generation after generation.
+pub fn search() -> Value {
+    let mut study = films("0.02 s", 2, &json!([]));
+    study["grid"] = json!({});
+    study["design"]["N"] = json!(6);
+    study["limits"] = json!({ "peak_vz": "< 20 m/s" });
+    let flows = json!(["1 g/s", "5 g/s"]);
+    study["optimise"] =
+        json!({ "minimise": "t_50_z_rim", "over": { "mass_flow_rate": flows }, "budget": 12 });
+    study["samples"] =
+        json!({ "number": 3, "of": { "film.thickness": { "normal": ["25 um", "4 %"] } } });
+    study
+}
+
 /// 4 piston jobs, 2 film jobs: every kind of stored file.
 pub fn small() -> Value {
     let flows = json!(["2 g/s", "3 g/s"]);

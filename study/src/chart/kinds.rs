@@ -60,8 +60,10 @@ impl ChartKind {
             if searched.is_some_and(|found| found.minimise.contains(&measure)) {
                 return Ok(Self::Search);
             }
-            let has_parts =
-                answer.is_some_and(|answer| !importance::of_measure(answer, &measure).is_empty());
+            let one_factor = OneFactor::of(source, 2).is_some();
+            let has_parts = !one_factor
+                && answer
+                    .is_some_and(|answer| !importance::of_measure(answer, &measure).is_empty());
             let kind = if has_parts { Self::Importance } else { Self::Tornado };
             return Ok(kind(measure));
         }

@@ -37,10 +37,7 @@ pub fn points(
         } else {
             format!("values extrapolated from n {all}")
         };
-        let _ = write!(
-            text,
-            "; the points nearest to a limit have {values} (pilots), once these have run"
-        );
+        let _ = write!(text, "; pilots have {values}, once these have run");
     }
     if let Some((finest, coarser)) = on_all.split_last() {
         let [others @ .., next] = coarser else { return text };

@@ -106,8 +106,15 @@ fn of_points(study: &Study) -> Vec<String> {
 
 /// A warning of a search of film of which one run decides each value.
 fn single_runs(study: &Study) -> Option<String> {
-    let (parameter, _) = study.searched().filter(|_| study.replicate_count() == 1)?;
-    seed_matters(Some(study)).then(|| {
+    if study.replicate_count() > 1 || !seed_matters(Some(study)) {
+        return None;
+    }
+    if study.budget().is_some() {
+        let text = "warning: one run stands for each point, and the smallest of single runs is partly luck; \
+                    \"replicates\": {\"seed\": 5} repeats each point";
+        return Some(text.to_owned());
+    }
+    study.searched().map(|(parameter, _)| {
         format!(
             "warning: one run decides each value of {parameter}, and another seed may move the border; \
              \"replicates\": {{\"seed\": 5}} repeats each value"

@@ -59,7 +59,8 @@ impl Grid {
         if self.columns.contains(&column) {
             return Err(refuse("varies subdivisions, which another axis varies already"));
         }
-        if self.search.is_some() && meshes.len() > 1 {
+        let searches = self.search.is_some() || self.optimise.is_some();
+        if searches && meshes.len() > 1 {
             return Err(refuse(
                 "extrapolates from several meshes, and a search judges single runs",
             ));

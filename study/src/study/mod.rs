@@ -18,6 +18,7 @@ mod column;
 mod expand;
 mod filter;
 pub mod finished;
+mod generations;
 mod grid;
 pub(crate) mod ground;
 mod inflow;
@@ -55,10 +56,8 @@ use crate::job::JobId;
 use crate::job::limits::JobLimits;
 use crate::job::point::{Point, Searched};
 use crate::job::result_limit::ResultLimit;
-use crate::job::row::ColumnId;
 use crate::platform::error::{InputError, Result as BillowResult};
 use crate::scene::file::flow_table;
-use finished::{FinishedRow, Judging};
 use grid::{Context, Grid};
 pub(crate) use meshes::features;
 pub use meshes::{Meshes, meshes_text};
@@ -190,6 +189,7 @@ impl Study {
         // A key that is sampled is not assumed.
         assumed.leave_out(|key| grid.columns_sampled().any(|column| column.key.path == key));
         let (mut points, filtered) = expand::points(&settings, &grid, &source, max_points)?;
+        grid.refuse_without_fold(&points, &source)?;
         meshes::refuse_other_models(&grid, &points, &source)?;
         notes.extend(parameters::alike(&points));
         let pilots = pilots::meshes(&settings, &grid, &result_limits, &points);
@@ -259,22 +259,6 @@ impl Study {
         Meshes { list, of_pilots: self.pilots.is_some(), of_file: self.has_mesh() }
     }
 
-    /// The runs of its pilots, generation after generation, once these planned points are finished; none where it needs no
-    /// pilots. `best` are the jobs of the best points of a search, the best first.
-    pub(crate) fn pilots(
-        &self,
-        planned: &[Point],
-        finished: &[FinishedRow],
-        best: Option<&[Vec<JobId>]>,
-    ) -> Vec<Vec<Point>> {
-        let Some(meshes) = &self.pilots else { return Vec::new() };
-        if let Some(best) = best {
-            return pilots::confirming(&self.settings, meshes, best, planned, finished);
-        }
-        let of = (&self.settings, &self.grid);
-        vec![pilots::points(of, meshes, &self.result_limits, planned, finished)]
-    }
-
     /// Whether its film is that of a mesh.
     pub fn has_mesh(&self) -> bool {
         !self.settings.meshes.is_empty()
@@ -285,79 +269,9 @@ impl Study {
         self.settings.on_mesh(design, n)
     }
 
-    /// Which of its points its pilots are, in words.
-    pub fn pilots_are(&self) -> &'static str {
-        if self.grid.optimise.is_some() {
-            "the best point"
-        } else {
-            "the points nearest to a limit"
-        }
-    }
-
-    /// Whether a planned point is the run of a pilot on another mesh than that of the study.
-    pub(crate) fn is_pilot(&self, point: &Point) -> bool {
-        self.mesh_of_pilots().is_some_and(|mesh| point.job.scene.design.subdivisions() != mesh)
-    }
-
-    /// The mesh of its points, where it has pilots.
-    pub(crate) fn mesh_of_pilots(&self) -> Option<u32> {
-        self.pilots.map(|_| self.points[0].job.scene.design.subdivisions())
-    }
-
-    /// The most pilots that it can have, one for each run of a point.
-    pub fn most_pilots(&self) -> usize {
-        let samples = self.grid.sample_count();
-        if self.grid.optimise.is_some() {
-            return pilots::MAX_CONFIRMED * self.replicate_count();
-        }
-        (self.point_count() * samples).min(2 * pilots::NEAREST) * (self.replicate_count() / samples)
-    }
-
     /// Number of runs of each point: 1 without replicates.
     pub fn replicate_count(&self) -> usize {
         self.grid.replicate_count()
-    }
-
-    /// Whether its finished rows decide about further points.
-    pub fn has_generations(&self) -> bool {
-        self.grid.search.is_some() || self.grid.optimise.is_some() || self.pilots.is_some()
-    }
-
-    /// Whether its answer says more than its rows: it has samples, searches an optimum, or varies several parameters.
-    pub fn asks_beyond_rows(&self) -> bool {
-        let varied = self.grid.columns.len() - self.replicates().len();
-        self.grid.sample_count() > 1 || self.grid.optimise.is_some() || varied > 1
-    }
-
-    /// The measures that it makes small; none without a search of an optimum.
-    pub fn minimised(&self) -> &[ColumnId] {
-        self.grid.optimise.as_ref().map_or(&[], |optimise| &optimise.minimise)
-    }
-
-    /// What its results are judged by.
-    pub fn judging(&self) -> Judging<'_> {
-        let (limits, assumed) = (self.result_limits(), self.assumed());
-        Judging { limits, assumed, minimised: self.minimised() }
-    }
-
-    /// Number of points of the search of an optimum in all, and of a generation after the first; `None` without one.
-    pub fn budget(&self) -> Option<[usize; 2]> {
-        self.grid.optimise.as_ref().map(|optimise| [optimise.budget, optimise.batch])
-    }
-
-    /// The parameter along which it searches a border, and what changes there; `None` without a search.
-    pub fn searched(&self) -> Option<(&str, Criterion)> {
-        let search = self.grid.search.as_ref()?;
-        Some((&self.grid.columns[search.column].name, search.criterion))
-    }
-
-    /// Largest number of values that one of its searches can take; `None` without a search.
-    pub fn most_search_values(&self) -> Option<usize> {
-        let search = self.grid.search.as_ref()?;
-        // With replicates, or where an uncertainty decides, both ends of the border move.
-        let one = self.replicate_count() == 1 && search.criterion == Criterion::Deployed;
-        let ends = if one { 1 } else { 2 };
-        Some(search.scan().len() + ends * search.most_values_after_scan())
     }
 
     /// Whether no row of its table depends on another one: it has a product of axes alone, without replicates and

@@ -74,27 +74,43 @@ pub fn next_jobs(study: &Study, finished: &[FinishedRow]) -> Option<Generation> 
     let has_pilots = study.meshes().of_pilots;
     let mut planned =
         if has_pilots { generation(0, study.points()).points } else { Arc::default() };
-    let mut number = 1;
+    let mut number = 0;
     let mut searching = Searching::of(study, finished);
-    while let Some(points) = searching.next_points().map(Arc::new) {
+    // Points without a job have nothing to wait for: they come with the next ones that have.
+    let mut without_job: Vec<Point> = Vec::new();
+    while let Some(points) = searching.next_points() {
+        searching.add(&points);
+        without_job.extend(points);
+        number += 1;
+        if without_job.iter().all(|point| point.infeasible.is_some()) {
+            continue;
+        }
+        let points = Arc::new(std::mem::take(&mut without_job));
         if is_open(&points) {
             return Some(generation(number, &points));
         }
-        searching.add(&points);
         if has_pilots {
             add_generation(&mut planned, generation(number, &points));
         }
-        number += 1;
     }
     let best = match &searching {
         Searching::Optimum(replay) => Some(replay.to_confirm()),
         _ => None,
     };
-    for pilots in study.pilots(&planned, finished, best.as_deref()) {
+    let mut pilots = study.pilots(&planned, finished, best.as_deref());
+    match pilots.first_mut() {
+        Some(first) => {
+            first.splice(0..0, without_job);
+        }
+        None if without_job.is_empty() => {}
+        // The runner takes a generation of this number once.
+        None => return Some(generation(number, &Arc::new(without_job))),
+    }
+    for pilots in pilots {
+        number += 1;
         if is_open(&pilots) {
             return Some(generation(number, &Arc::new(pilots)));
         }
-        number += 1;
     }
     None
 }
@@ -176,11 +192,11 @@ pub fn optimum(study: &Study, finished: &[FinishedRow]) -> Option<Optimum> {
     while replay.has_ended_so_far() {
         let points = replay.next_points();
         if points.is_empty() {
-            break;
+            return Some(replay.optimum(true));
         }
         replay.add(&points);
     }
-    Some(replay.optimum())
+    Some(replay.optimum(false))
 }
 
 /// A generation of these points. Points with the same job are merged into the first of them.

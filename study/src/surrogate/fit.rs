@@ -9,11 +9,12 @@
 //! (M. Blum and M. Riedmiller, 2013), from three starts.
 
 use nalgebra::Cholesky;
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
-use super::{System, correlations, scaled};
+use super::{System, chosen, correlations, scaled};
 
 /// Points that the scales are found with, at most. Chosen: more change them little and cost their cube.
-const MAX_POINTS: usize = 150;
+const MAX_POINTS: usize = 128;
 /// Steps of Rprop from each start.
 const STEPS: usize = 40;
 /// Starts: length of every input, and noise.
@@ -33,14 +34,17 @@ pub(super) struct Scales {
 
 /// The scales of the largest likelihood. `None` where all values are alike, or fewer than three.
 pub(super) fn most_likely(points: &[Vec<f64>], values: &[f64], words: &[bool]) -> Option<Scales> {
-    let every = points.len().div_ceil(MAX_POINTS).max(1);
-    let points: Vec<Vec<f64>> = points.iter().step_by(every).cloned().collect();
-    let values: Vec<f64> = values.iter().step_by(every).copied().collect();
+    let chosen = chosen(points.len(), MAX_POINTS);
+    let points: Vec<Vec<f64>> = chosen.iter().map(|k| points[*k].clone()).collect();
+    let values: Vec<f64> = chosen.iter().map(|k| values[*k]).collect();
     if values.len() < 3 || values.iter().all(|value| value.total_cmp(&values[0]).is_eq()) {
         return None;
     }
-    let climbs = STARTS.iter().filter_map(|start| climb(&points, &values, words, *start));
-    let best = climbs.reduce(|best, other| if other.0 > best.0 { other } else { best })?;
+    let climbs: Vec<Option<(f64, Scales)>> =
+        STARTS.par_iter().map(|start| climb(&points, &values, words, *start)).collect();
+    let better =
+        |best: (f64, Scales), other: (f64, Scales)| if other.0 > best.0 { other } else { best };
+    let best = climbs.into_iter().flatten().reduce(better)?;
     Some(best.1)
 }
 

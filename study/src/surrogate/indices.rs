@@ -89,7 +89,7 @@ impl Surrogate {
         weights.rows_mut(0, n).copy_from(&self.system.weights);
         let (best, chance) = moments.indices(&weights, self.chance())?;
         let draws: Vec<Vec<[f64; 2]>> = (0..DRAWS).filter_map(|k| Some(draw(k)?.0)).collect();
-        let unseen = 0.5 * (1.0 - chance - self.leave_one_out().seen).max(0.0);
+        let unseen = 0.5 * (1.0 - chance - self.foresees()).max(0.0);
         let index = |input: usize| {
             let of = |which: usize| {
                 let value = best[input][which];

@@ -27,7 +27,7 @@ pub use indices::{Index, Indices};
 use fit::Scales;
 
 /// Most points that a surrogate uses. Chosen: its equations then take a tenth of a second.
-pub const MAX_POINTS: usize = 400;
+const MAX_POINTS: usize = 400;
 
 /// A surrogate of one measure.
 #[derive(Debug, Clone)]
@@ -54,22 +54,13 @@ struct System {
     ones: DVector<f64>,
 }
 
-/// How well a surrogate foresees a point that it does not know.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LeaveOneOut {
-    /// Root of the mean square of its errors.
-    pub error: f64,
-    /// The part of the variance of the values that it foresees: 1 for all, 0 or less for none.
-    pub seen: f64,
-}
-
 impl Surrogate {
-    /// The surrogate of these values, one at each point; `words` says which inputs are words. Of more than [`MAX_POINTS`]
-    /// every second, third, … is used. `None` where all values are alike, or fewer than three.
+    /// The surrogate of these values, one at each point; `words` says which inputs are words. Of more than
+    /// 400 so many are used. `None` where all values are alike, or fewer than three.
     pub fn fit(points: &[Vec<f64>], values: &[f64], words: &[bool]) -> Option<Self> {
-        let every = points.len().div_ceil(MAX_POINTS).max(1);
-        let points: Vec<Vec<f64>> = points.iter().step_by(every).cloned().collect();
-        let values: Vec<f64> = values.iter().step_by(every).copied().collect();
+        let chosen = chosen(points.len(), MAX_POINTS);
+        let points: Vec<Vec<f64>> = chosen.iter().map(|k| points[*k].clone()).collect();
+        let values: Vec<f64> = chosen.iter().map(|k| values[*k]).collect();
         let scales = fit::most_likely(&points, &values, words)?;
         Self::with(points, values, words.to_vec(), scales)
     }
@@ -118,8 +109,9 @@ impl Surrogate {
         libm::sqrt(self.variance * self.scales.noise)
     }
 
-    /// Its error at each point, were that not known.
-    pub fn leave_one_out(&self) -> LeaveOneOut {
+    /// How well it foresees points that it does not know: the part of the variance of its values that it foresees where each
+    /// is left out in turn; 1 for all, 0 or less for none.
+    pub fn foresees(&self) -> f64 {
         let System { k, weights, ones, .. } = &self.system;
         let inverse = k.inverse();
         let n = self.values.len() as f64;
@@ -139,7 +131,7 @@ impl Surrogate {
                 error * error
             })
             .sum();
-        LeaveOneOut { error: libm::sqrt(squares / n), seen: 1.0 - squares / all }
+        1.0 - squares / all
     }
 }
 
@@ -202,6 +194,18 @@ fn correlations(
 fn scaled(a: f64, b: f64, length: f64) -> f64 {
     const ROOT_OF_5: f64 = 2.236_067_977_499_79;
     ROOT_OF_5 * (a - b).abs() / length
+}
+
+/// At most so many of some positions, in order: by a hash, as every second or third of the points of a grid may have one
+/// value of an axis.
+pub fn chosen(all: usize, most: usize) -> Vec<usize> {
+    let mut positions: Vec<usize> = (0..all).collect();
+    if all > most {
+        positions.sort_by_key(|position| hash(17, *position as u64));
+        positions.truncate(most);
+        positions.sort_unstable();
+    }
+    positions
 }
 
 /// A number of the standard normal distribution.

@@ -22,13 +22,18 @@ const LONG: usize = 4;
 
 /// SIGKILL at random times of a run, resumed until the study is complete.
 pub fn kill9(place: &Place) -> Result<Prepared, String> {
-    let truth = Truth::of_run(place, &studies::mixed())?;
-    // Once more, when everything is in the memory of the system.
-    fs::remove_dir_all(place.results()).map_err(|error| error.to_string())?;
-    let time = place.run(RUN).wall;
+    let mut subjects = Vec::new();
+    for (name, study) in [("many jobs", studies::mixed()), ("a search", studies::search())] {
+        let place = place.within(name);
+        let truth = Truth::of_run(&place, &study)?;
+        // Once more, when everything is in the memory of the system.
+        fs::remove_dir_all(place.results()).map_err(|error| error.to_string())?;
+        subjects.push((name, study, truth, place.run(RUN).wall));
+    }
     Ok(Prepared::new(60, move |trial, random, place| {
-        "kill -9 at random times".clone_into(&mut trial.what);
-        place.write_study(&studies::mixed());
+        let (name, study, truth, time) = &subjects[trial.number % subjects.len()];
+        trial.what = format!("kill -9 at random times, {name}");
+        place.write_study(study);
         for _ in 0..MAX_KILLS {
             let running = place.start(place.billow(RUN));
             sleep(time.mul_f64(0.8 * random.fraction()));

@@ -33,7 +33,7 @@ pub use optimum::{Best, Optimum, Small, Tried};
 pub use points::{MixedPoint, PointCounts, VerdictSensitivity};
 pub use safety::{Nearest, SafeCounts, Safety};
 pub use searches::{Found, Searches};
-pub use tolerances::{Importance, MESH, Part, Quantile, Tolerance};
+pub use tolerances::{Importance, MESH, MIN_SEEN, Part, Quantile, Tolerance};
 pub use trust::Trust;
 
 /// Most values of a parameter that the answer compares. Chosen: more are a chart, or `billow compare --rank`.
@@ -144,9 +144,9 @@ impl Answer {
         answer.optimum = Optimum::of(stored, table);
         if answer.optimum.is_some() {
             // Its points are not spread evenly: what is known of them is what the search found.
-        } else if sampled.is_empty() {
+        } else if study.is_product() {
             answer.importance = tolerances::of_grid(table, limits, &replicates);
-        } else {
+        } else if !sampled.is_empty() {
             let inputs = (sampled.as_slice(), study.samples_are_independent());
             answer.tolerances = Tolerance::all(table, limits, &replicates, inputs);
         }

@@ -8,7 +8,7 @@ use crate::analysis::replicates::{Condensed, source};
 use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
-use crate::job::result_limit::Safety;
+use crate::job::result_limit::{ResultLimit, Safety};
 use crate::job::row::ColumnId;
 use crate::store::stored::Stored;
 use crate::store::table::Table;
@@ -21,8 +21,12 @@ pub struct Optimum {
     pub minimise: Vec<String>,
     /// Number of points that have ended, and in all.
     pub points: [usize; 2],
+    /// Whether it has no other point to try.
+    pub ended: bool,
     /// The best point; of two measures those of the front, by the first measure. None where no point keeps the limits.
     pub best: Vec<Best>,
+    /// Better points, which do not keep the limits on the finest mesh.
+    pub refuted: Vec<Best>,
     /// After each generation the number of points, and the smallest value of each measure so far among points that keep the
     /// limits, SI.
     pub course: Vec<(usize, Vec<Option<f64>>)>,
@@ -56,6 +60,8 @@ pub struct Best {
     /// What the limits say of its runs on the finest mesh that it has; `None` without limits.
     #[serde(serialize_with = "safety")]
     pub safety: Option<Safety>,
+    /// Whether its runs on the finest mesh that it has meet every limit.
+    pub keeps_limits: bool,
     /// What becomes small.
     pub measures: Vec<Small>,
     /// The limit with the smallest margin, and that margin.
@@ -90,28 +96,40 @@ impl Optimum {
         let minimised = stored.study.minimised();
         let rows: Vec<usize> = (0..table.rows()).collect();
         let points = Condensed::of(table, &rows, &stored.study.replicates());
-        let best = found.best.iter().take(if minimised.len() == 1 { 1 } else { usize::MAX });
-        let best = best.filter_map(|trial| {
-            Best::of((table, &points), &found.trials[*trial], *trial, minimised)
-        });
+        let limits = stored.study.result_limits();
+        let (mut best, mut refuted) = (Vec::new(), Vec::new());
+        for trial in &found.best {
+            let of = (&found.trials[*trial], *trial);
+            let Some(point) = Best::of((table, &points), of, (minimised, limits)) else { continue };
+            let one = minimised.len() == 1;
+            if one && point.confirmed_on.is_some() && !point.keeps_limits {
+                refuted.push(point);
+                continue;
+            }
+            best.push(point);
+            if one {
+                break;
+            }
+        }
         let ended = found.trials.iter().filter(|trial| trial.ended).count();
+        let tried = tried(&found, &best);
         Some(Self {
             minimise: minimised.iter().map(|measure| measure.name().to_owned()).collect(),
             points: [ended, found.budget],
-            best: best.collect(),
+            ended: found.ended,
+            best,
+            refuted,
             course: course(&found, minimised.len()),
-            tried: tried(&found),
+            tried,
         })
     }
 }
 
-fn tried(found: &study::Optimum) -> Vec<Tried> {
-    let one = found.trials.first().is_none_or(|trial| trial.measures.len() == 1);
-    let best = &found.best[..if one { found.best.len().min(1) } else { found.best.len() }];
+fn tried(found: &study::Optimum, best: &[Best]) -> Vec<Tried> {
     let tried = |(k, trial): (usize, &Trial)| Tried {
         measures: trial.measures.clone(),
-        keeps_limits: trial.keeps_limits(),
-        is_best: best.contains(&k),
+        keeps_limits: trial.keeps_limits,
+        is_best: best.iter().any(|point| point.number == k + 1),
     };
     found.trials.iter().enumerate().map(tried).collect()
 }
@@ -121,7 +139,7 @@ fn course(found: &study::Optimum, measures: usize) -> Vec<(usize, Vec<Option<f64
     let mut course: Vec<(usize, Vec<Option<f64>>)> = Vec::new();
     let mut smallest = vec![None; measures];
     for (index, trial) in found.trials.iter().enumerate().filter(|(_, trial)| trial.ended) {
-        if trial.keeps_limits() {
+        if trial.keeps_limits {
             for (least, value) in smallest.iter_mut().zip(&trial.measures) {
                 *least = [*least, *value].into_iter().flatten().reduce(f64::min);
             }
@@ -138,9 +156,8 @@ fn course(found: &study::Optimum, measures: usize) -> Vec<(usize, Vec<Option<f64
 impl Best {
     fn of(
         (table, points): (&Table, &Condensed),
-        trial: &Trial,
-        number: usize,
-        minimised: &[ColumnId],
+        (trial, number): (&Trial, usize),
+        (minimised, limits): (&[ColumnId], &[ResultLimit]),
     ) -> Option<Self> {
         let jobs = table.column("job")?;
         let is_of = |row: &usize| {
@@ -169,6 +186,10 @@ impl Best {
             })
         };
         let margin = runs.worst_margin(table);
+        let keeps = |limit: &ResultLimit| {
+            let met = |row: &usize| table.judge(limit, *row).is_some_and(|judged| judged.met);
+            runs.finest.iter().all(met)
+        };
         Some(Self {
             parameters: parameters_of(&points.table, point),
             job: jobs.cells[searched].to_string(),
@@ -177,6 +198,7 @@ impl Best {
             safety: points.safety(point),
             measures: minimised.iter().enumerate().filter_map(small).collect(),
             limit: margin.map(|(margin, measure, _)| (measure, margin)),
+            keeps_limits: limits.iter().all(keeps),
             at_end: trial.at_end.clone(),
             confirmed_on: mesh(finest).filter(|n| Some(*n) > mesh(searched)),
         })

@@ -122,6 +122,11 @@ impl Args {
         }
     }
 
+    /// Whether a chart needs the answer: those that fit the study, and a measure alone.
+    fn asks_answer(&self) -> bool {
+        !self.is_one() || (self.measure.is_some() && self.over.is_none() && self.map.is_empty())
+    }
+
     /// Whether the options ask for one chart.
     fn is_one(&self) -> bool {
         !self.history.is_empty() || self.measure.is_some() || self.borders
@@ -248,7 +253,7 @@ fn draw(
     let limits = study.result_limits();
     let computed;
     let answer = match answer {
-        None if study.asks_beyond_rows() => {
+        None if study.asks_beyond_rows() && args.asks_answer() => {
             computed = Answer::of(stored, table);
             Some(&computed)
         }

@@ -93,13 +93,16 @@ fn optimise(study: &Study, counts: &PlanCounts) -> Option<String> {
     let (runs, first) = (study.replicate_count(), study.point_count());
     let names: Vec<&str> = study.minimised().iter().map(|measure| measure.name()).collect();
     Some(format!(
-        "search: smallest {} among points that keep the limits; first generation {} of {}; then generations of {} up to {}, \
-         {} in all",
+        "search: smallest {}{}; first generation {} of {}{}; up to {} in all",
         names.join(" and "),
+        if study.result_limits().is_empty() { "" } else { " among points that keep the limits" },
         count(first, "point"),
         count(counts.jobs, "job"),
-        batch,
-        count(budget, "point"),
+        if first < budget {
+            format!("; then generations of {batch} up to {}", count(budget, "point"))
+        } else {
+            String::new()
+        },
         count(budget * runs, "job"),
     ))
 }

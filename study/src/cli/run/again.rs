@@ -116,7 +116,10 @@ fn run_changed(
         let found = planned.iter().find(|other| is_same_point(other, point));
         let found = found.filter(|other| other.infeasible.is_none()).ok_or_else(|| {
             let problem = format!("leaves the study without the point of job {}", id.short());
-            let next = "change a key that the grid does not vary";
+            let next = match stored.study.budget() {
+                Some(_) => "a study of this point without optimise: billow job names its values",
+                None => "change a key that the grid does not vary",
+            };
             Error::invalid_option("--set", &args.set.set.join(" "), problem, "", next)
         })?;
         let root = beside(stored.results.root());

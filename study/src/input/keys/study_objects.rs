@@ -58,7 +58,7 @@ pub static RANGE_KEYS: &[Key] = &[
 /// The keys of the search of an optimum, beside `minimise` and `over`.
 #[rustfmt::skip]
 pub static OPTIMISE_KEYS: &[Key] = &[
-    key("budget", KeyKind::Integer(4, 10_000), Required, "60", "Number of points in all, each with its replicates and samples."),
+    key("budget", KeyKind::Integer(4, 400), Required, "60", "Number of points in all, each with its replicates and samples."),
     key("batch", KeyKind::Integer(1, 64), Integer(4), "8",
         "Number of points that are planned together after the first: as many as keep the threads busy."),
     key("seed", KeyKind::Integer(0, u32::MAX as i64), Integer(1), "2", "Another seed tries other points."),

@@ -14,9 +14,9 @@ const MAX_POINTS: usize = 4;
 
 /// The line; `None` for a study without limits, and for one that searches a border: its borders say it.
 pub(super) fn headline(answer: &Answer) -> Option<String> {
-    match answer.optimum.as_ref().map(|found| found.best.as_slice()) {
-        Some([best]) => return Some(of_point(best)),
-        Some([_, ..]) => return None,
+    match answer.optimum.as_ref().map(|found| (found.minimise.len(), found.best.first())) {
+        Some((1, Some(best))) => return Some(of_point(best)),
+        Some((_, Some(_))) => return None,
         _ => {}
     }
     let safety = answer.safety.as_ref().filter(|_| answer.searches.is_none())?;

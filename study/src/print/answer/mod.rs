@@ -134,17 +134,20 @@ pub fn print_next(answer: &Answer, root: &Path, out: &mut dyn Write) -> io::Resu
     let root = quote::path(root);
     writeln!(out, "  next     billow table {root}")?;
     writeln!(out, "           billow chart {root}")?;
-    if answer.safety.is_some() {
+    if answer.safety.is_some() && answer.optimum.is_none() {
         writeln!(out, "           billow compare {root} --rank")?;
     }
     if answer.searches.is_some() {
         writeln!(out, "           billow table {root} --borders")?;
     }
+    // The table of mesh errors names a method only where it reaches.
+    let trust = answer.trust.as_ref();
+    let in_table = trust.is_some_and(|t| t.no_error_reason.is_none() && t.pilots.is_none());
     if answer.safety.as_ref().is_some_and(|safety| safety.counts.uncertain > 0) {
         if answer.searches.is_some() {
             // A search judges single runs: it has no values from two meshes.
             writeln!(out, "           billow plan {root}/study.json --set design.subdivisions=8")?;
-        } else if !answer.is_from_mesh {
+        } else if !answer.is_from_mesh && in_table {
             // It names methods with smaller errors.
             writeln!(out, "           billow plan {root}/study.json --accuracy \"15 %\"")?;
         }

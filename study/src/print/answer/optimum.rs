@@ -11,38 +11,55 @@ use crate::print::{count, range};
 /// Most points of a front that the answer names.
 const MAX_FRONT: usize = 12;
 
-/// The front between two measures, and how the search went on. A single best point is the headline.
+/// The front between two measures, better points that the finest mesh refutes, and how the search went on. A single best
+/// point is the headline.
 pub(super) fn lines(found: &Optimum) -> Vec<String> {
-    let [ended, budget] = found.points;
+    let [tried, budget] = found.points;
     let mut lines = Vec::new();
-    if found.best.len() > 1 {
-        let names = found.minimise.join(" and ");
-        lines.push(format!("the front between {names} has {}:", count(found.best.len(), "point")));
-        lines.extend(found.best.iter().take(MAX_FRONT).map(of_point));
+    if found.minimise.len() > 1 && !found.best.is_empty() {
+        let (names, all) = (found.minimise.join(" and "), found.best.len());
+        // Spread along the front, both ends among them.
+        let shown = all.min(MAX_FRONT);
+        let some = if shown < all { format!(", {shown} of them") } else { String::new() };
+        lines.push(format!("the front between {names} has {}{some}:", count(all, "point")));
+        let place = |k: usize| if shown > 1 { k * (all - 1) / (shown - 1) } else { 0 };
+        lines.extend((0..shown).map(|k| of_point(&found.best[place(k)])));
+    }
+    for point in &found.refuted {
+        lines.push(format!("better, but not on the finest mesh: {}", of_point(point)));
     }
     if found.best.is_empty() {
-        lines.push(format!("none of {} keeps every limit", count(ended, "point")));
+        let limits = if found.tried.iter().any(|one| one.measures.iter().all(Option::is_some)) {
+            "keeps every limit"
+        } else {
+            "has a result"
+        };
+        lines.push(format!("none of {} {limits}", count(tried, "point")));
     }
-    if ended < budget {
-        lines.push(format!(
-            "the search is not at its end: {ended} of {} have run",
-            count(budget, "point")
-        ));
+    if tried < budget {
+        lines.push(if found.ended {
+            format!(
+                "{} tried of {budget}: all others are refused, or are the same jobs",
+                count(tried, "point")
+            )
+        } else {
+            format!("the search goes on: {tried} of {} have run", count(budget, "point"))
+        });
     }
-    if found.best.len() == 1 {
-        lines.extend(course(found));
+    if let [best] = found.best.as_slice() {
+        lines.extend(course(found, best));
     }
     lines
 }
 
-/// As in `peak_vz 8.1 [7.9 to 8.4] ± 0.3 m/s at from=0.1 s, …; safe; nearest limit t_deployed, 2 % away; point 31 of 5 runs`.
+/// As in `peak_vz 8.1 [7.9 to 8.4] ± 0.3 m/s at from=0.1 s, …; safe; nearest limit t_deployed, 2 % away; 5 runs, …`.
 pub(super) fn of_point(best: &Best) -> String {
     let measures: Vec<String> = best.measures.iter().map(small).collect();
     let mut text = format!("{} at {}", measures.join(", "), parameters_text(&best.parameters));
     match best.safety {
         Some(Safety::Safe) => text.push_str("; safe"),
-        Some(Safety::Uncertain) => text.push_str("; within the uncertainty of its limits"),
-        Some(Safety::Unsafe) => text.push_str("; does not keep its limits on the finest mesh"),
+        Some(_) if best.keeps_limits => text.push_str("; within the uncertainty of its limits"),
+        Some(_) => text.push_str("; does not keep its limits"),
         None => {}
     }
     if let Some(n) = best.confirmed_on {
@@ -51,22 +68,23 @@ pub(super) fn of_point(best: &Best) -> String {
         let _ =
             write!(text, " (ran on n {n} too; {} on the mesh of the search)", values.join(", "));
     }
+    let limit = best.limit.as_ref().map(|(measure, margin)| {
+        let percent = brief_number(100.0 * margin.abs());
+        if *margin < 0.0 {
+            format!("misses the limit of {measure} by {percent} %")
+        } else {
+            format!("nearest limit {measure}, {percent} % away")
+        }
+    });
     let ends = best.at_end.iter().map(|(name, upper)| {
         format!("{name} at the {} end of its range", if *upper { "upper" } else { "lower" })
-    });
-    let limit = best.limit.as_ref().map(|(measure, margin)| {
-        format!("nearest limit {measure}, {} % away", brief_number(100.0 * margin))
     });
     for part in limit.into_iter().chain(ends) {
         let _ = write!(text, "; {part}");
     }
-    let _ = write!(
-        text,
-        "; {} of {}, the first is job {}",
-        format_args!("point {}", best.number),
-        count(best.runs, "run"),
-        &best.job[..8.min(best.job.len())]
-    );
+    let job = &best.job[..8.min(best.job.len())];
+    let first = if best.runs > 1 { ", the first is" } else { "," };
+    let _ = write!(text, "; {}{first} job {job}", count(best.runs, "run"));
     text
 }
 
@@ -78,13 +96,10 @@ fn small(one: &Small) -> String {
     format!("{}{unknown}", text.trim_end())
 }
 
-/// How much better than the first points, which are spread evenly, and when nothing better came any more.
-fn course(found: &Optimum) -> Option<String> {
-    let shown = &found.best[0].measures.first()?.shown;
+/// How much better than the first points, which are spread evenly, and when it was found.
+fn course(found: &Optimum, best: &Best) -> Option<String> {
+    let shown = &best.measures.first()?.shown;
     let (first, of_first) = found.course.first()?;
-    let (_, last) = found.course.last()?;
-    let last = last[0]?;
-    let since = found.course.iter().find(|(_, smallest)| smallest[0] == Some(last))?.0;
     let before = match of_first[0] {
         None => format!(
             "none of the first {}, spread evenly, keeps every limit",
@@ -96,5 +111,5 @@ fn course(found: &Optimum) -> Option<String> {
             shown.brief(value)
         ),
     };
-    Some(format!("{before}; after {} none was better", count(since, "point")))
+    Some(format!("{before}; this is point {} of {}", best.number, found.points[0]))
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::parameters_text;
-use crate::analysis::answer::{Importance, MESH, Part, Quantile, Tolerance};
+use crate::analysis::answer::{Importance, MESH, MIN_SEEN, Part, Quantile, Tolerance};
 use crate::input::units::DisplayUnit;
 use crate::input::value::brief_number;
 use crate::job::proportion::Proportion;
@@ -110,7 +110,7 @@ fn importance(found: &Importance) -> String {
     let percent = |seen: f64| format!("{:.0} %", 100.0 * seen.max(0.0));
     let why = match (found.seen, found.indices) {
         (Some(seen), true) => format!("a surrogate foresees {} at points left out", percent(seen)),
-        (Some(seen), false) if seen < 0.5 => {
+        (Some(seen), false) if seen < MIN_SEEN => {
             format!("ranks: a surrogate foresees only {} at points left out", percent(seen))
         }
         _ => "ranks".to_owned(),

@@ -3,7 +3,7 @@
 //! ```text
 //! one measure    a(x) = ln EI(x) + Σ_j ln P(margin_j(x) > 0)          J. R. Gardner et al. (2014)
 //!                EI = (b − m) Φ(u) + s φ(u),  u = (b − m)/s            J. Močkus (1975); m, s of the surrogate at x
-//!                b: the smallest m among the points that probably keep the limits; without one EI = 1
+//!                b: the smallest m among the points that keep the limits; without one EI = 1
 //! two measures   y = max_k w_k y_k + 0.05 Σ_k w_k y_k, y_k from 0 to 1, other weights w for each point of a batch: ParEGO
 //!                (J. Knowles, 2006)
 //! a batch        each point is taken as known, at its mean, before the next is chosen (D. Ginsbourger et al., 2010)
@@ -16,10 +16,12 @@ use std::hash::{Hash, Hasher};
 use std::sync::{Mutex, PoisonError};
 
 use billow_solver::platform::random::{hash, unit};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 use super::{Optimise, Trial, sobol};
 use crate::input::value::Value;
-use crate::surrogate::{Surrogate, normal};
+use crate::job::JobId;
+use crate::surrogate::{Coordinate, Surrogate, normal};
 
 /// Points at which a(x) is computed: of the Sobol' sequence, and near the best points.
 const SPREAD: usize = 400;
@@ -33,24 +35,37 @@ const SUM: f64 = 0.05;
 /// Margin of a point that keeps no limit.
 const FAILED: f64 = -1.0;
 
+/// Distance from a refused place, as a part of each range, within which no other is proposed in the batch.
+const REFUSED: f64 = 0.05;
+/// Proposals that are refused before a batch ends. Chosen: more are a range of which most is not allowed.
+const MAX_REFUSED: usize = 64;
+
 /// What was proposed before for the same trials: a plan asks for each generation again whenever it is replayed.
 static PROPOSED: Mutex<BTreeMap<u64, Vec<Vec<Value>>>> = Mutex::new(BTreeMap::new());
 
-/// The next points: at most `batch`, fewer where a range of words and whole numbers has no others.
+/// The next points of a generation with this number: at most a batch, fewer where no others are found. `is_new` says
+/// whether the study allows values, and runs other jobs with them.
 pub(super) fn proposed(
     optimise: &Optimise,
     trials: &[Trial],
-    batch: usize,
-    generation: u32,
+    (batch, generation): (usize, u32),
+    is_new: &dyn Fn(&[Value]) -> bool,
 ) -> Vec<Vec<Value>> {
     let mut key = DefaultHasher::new();
-    (format!("{optimise:?}{trials:?}"), batch, generation).hash(&mut key);
+    (format!("{optimise:?}"), batch, generation).hash(&mut key);
+    for trial in trials {
+        // A job id stands for all other settings of the study.
+        let ids: Vec<&str> = trial.jobs.iter().map(JobId::as_str).collect();
+        let numbers = trial.place.iter().chain(trial.measures.iter().flatten());
+        let numbers = numbers.chain(trial.margins.iter().flatten()).map(|number| number.to_bits());
+        (ids, trial.keeps_limits, numbers.collect::<Vec<u64>>()).hash(&mut key);
+    }
     let key = key.finish();
     let known = || PROPOSED.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(proposed) = known().get(&key) {
         return proposed.clone();
     }
-    let chosen = Search { optimise, trials, generation }.batch(batch);
+    let chosen = Search { optimise, trials, generation }.batch(batch, is_new);
     known().insert(key, chosen.clone());
     chosen
 }
@@ -71,35 +86,36 @@ struct Surrogates {
 }
 
 impl Search<'_> {
-    fn batch(&self, batch: usize) -> Vec<Vec<Value>> {
+    fn batch(&self, batch: usize, is_new: &dyn Fn(&[Value]) -> bool) -> Vec<Vec<Value>> {
         let margins = self.margins();
         let two = self.optimise.minimise.len() > 1;
         let mut surrogates = self.surrogates(&margins, 0);
         let mut believed: Vec<Vec<f64>> = Vec::new();
-        let mut chosen: Vec<Vec<Value>> = Vec::new();
-        for number in 0..batch {
-            if two && number > 0 {
-                surrogates = self.surrogates(&margins, number);
+        let (mut chosen, mut refused): (Vec<Vec<Value>>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
+        while chosen.len() < batch && refused.len() < MAX_REFUSED {
+            let number = chosen.len();
+            let Some(values) = self.best(&surrogates, number, &chosen, &refused) else { break };
+            let place = self.optimise.place(&values);
+            if !is_new(&values) {
+                refused.push(place);
+                continue;
+            }
+            chosen.push(values);
+            if two {
+                believed.push(place);
+                surrogates = self.surrogates(&margins, number + 1);
                 for place in &believed {
                     surrogates = surrogates.believing(place);
                 }
+            } else {
+                surrogates = surrogates.believing(&place);
             }
-            let Some(values) = self.best(&surrogates, number, &chosen) else { break };
-            let place = self.place(&values);
-            surrogates = surrogates.believing(&place);
-            believed.push(place);
-            chosen.push(values);
         }
         chosen
     }
 
-    fn place(&self, values: &[Value]) -> Vec<f64> {
-        let pairs = self.optimise.coordinates.iter().zip(values);
-        pairs.map(|(of, value)| of.place(value)).collect()
-    }
-
     fn words(&self) -> Vec<bool> {
-        self.optimise.coordinates.iter().map(crate::surrogate::Coordinate::is_word).collect()
+        self.optimise.coordinates.iter().map(Coordinate::is_word).collect()
     }
 
     /// The surrogate of the margin of each limit that some points keep and others do not, or that differs.
@@ -111,7 +127,8 @@ impl Search<'_> {
                 self.trials.iter().map(|trial| trial.margins[limit].unwrap_or(FAILED)).collect();
             Surrogate::fit(&points, &values, &self.words())
         };
-        (0..limits).filter_map(of).collect()
+        let all: Vec<Option<Surrogate>> = (0..limits).into_par_iter().map(of).collect();
+        all.into_iter().flatten().collect()
     }
 
     /// The surrogates for a point of the batch.
@@ -123,7 +140,7 @@ impl Search<'_> {
         let measure =
             if worst.is_finite() { Surrogate::fit(&points, &known, &self.words()) } else { None };
         let mut found = Surrogates { measure, margins: margins.to_vec(), best: None };
-        let kept = self.trials.iter().filter(|trial| trial.keeps_limits());
+        let kept = self.trials.iter().filter(|trial| trial.keeps_limits);
         let means = kept.filter_map(|trial| Some(found.measure.as_ref()?.at(&trial.place).0));
         found.best = means.reduce(f64::min);
         found
@@ -136,7 +153,8 @@ impl Search<'_> {
             return self.trials.iter().map(|trial| of(trial, 0)).collect();
         }
         // Both ends, then halves: 0, 1, ½, ¼, ¾, …
-        let draw = (self.generation as usize * self.optimise.batch + number) as u64;
+        let generation = self.generation.saturating_sub(1) as usize;
+        let draw = (generation * self.optimise.batch + number) as u64;
         let first = match draw {
             0 => 0.0,
             1 => 1.0,
@@ -158,17 +176,27 @@ impl Search<'_> {
         self.trials.iter().map(scalar).collect()
     }
 
-    /// The point where the surrogates expect most, different from all before.
+    /// The point where the surrogates expect most, different from all before, and not near a refused place.
     fn best(
         &self,
         surrogates: &Surrogates,
         number: usize,
         chosen: &[Vec<Value>],
+        refused: &[Vec<f64>],
     ) -> Option<Vec<Value>> {
-        let is_new = |values: &Vec<Value>| {
-            !chosen.contains(values) && self.trials.iter().all(|trial| trial.values != *values)
+        let words = self.words();
+        let near = |a: &[f64], b: &[f64]| {
+            let mut places = a.iter().zip(b).zip(&words);
+            places.all(|((a, b), word)| (a - b).abs() < if *word { 0.5 } else { REFUSED })
         };
-        let score = |values: &Vec<Value>| surrogates.expects(&self.place(values));
+        let is_new = |values: &Vec<Value>| {
+            let known = || self.trials.iter().any(|trial| trial.values == *values);
+            let place = || self.optimise.place(values);
+            !chosen.contains(values)
+                && !known()
+                && (refused.is_empty() || !refused.iter().any(|other| near(other, &place())))
+        };
+        let score = |values: &Vec<Value>| surrogates.expects(&self.optimise.place(values));
         let mut best: Option<(f64, Vec<Value>)> = None;
         let mut consider = |values: Vec<Value>| {
             if is_new(&values) {
@@ -179,7 +207,7 @@ impl Search<'_> {
             }
         };
         let seed = hash(u64::from(self.optimise.seed), 1 + u64::from(self.generation));
-        let seed = hash(seed, number as u64);
+        let seed = hash(seed, (number + refused.len()) as u64);
         #[expect(clippy::cast_possible_truncation, reason = "any bits are a seed")]
         let spread = sobol(self.optimise.columns.len(), seed as u32).take(SPREAD);
         spread.for_each(|point| consider(self.optimise.values(&point)));
@@ -190,7 +218,7 @@ impl Search<'_> {
         // From the best on, in ever smaller circles.
         for round in 0..NEAR as u64 {
             let Some((_, values)) = &best else { break };
-            let centre = self.place(values);
+            let centre = self.optimise.place(values);
             let distance = 0.1 * libm::exp(-4.0 * round as f64 / NEAR as f64);
             let values = self.near(&centre, distance, hash(!seed, round));
             if is_new(&values) {
@@ -208,7 +236,7 @@ impl Search<'_> {
         let worst = |trial: &Trial| {
             trial.margins.iter().map(|m| m.unwrap_or(FAILED)).fold(f64::INFINITY, f64::min)
         };
-        let key = |trial: &Trial| match (&surrogates.measure, trial.keeps_limits()) {
+        let key = |trial: &Trial| match (&surrogates.measure, trial.keeps_limits) {
             (Some(measure), true) => (0, measure.at(&trial.place).0),
             _ => (1, -worst(trial)),
         };
@@ -219,15 +247,15 @@ impl Search<'_> {
 
     /// A point near a place: each number moves by a normal distribution, a word changes in one of eight cases.
     fn near(&self, centre: &[f64], distance: f64, seed: u64) -> Vec<Value> {
-        let moved = |(j, of): (usize, &crate::surrogate::Coordinate)| {
+        let moved = |(j, of): (usize, &Coordinate)| {
             let draw = unit(hash(seed, j as u64 + 1));
             match of {
-                crate::surrogate::Coordinate::Word(words) => {
+                Coordinate::Word(words) => {
                     let count = words.len() as f64;
                     let place = if draw < 0.125 { draw / 0.125 } else { (centre[j] + 0.5) / count };
                     super::value(of, place)
                 }
-                crate::surrogate::Coordinate::Whole([low, high]) => {
+                Coordinate::Whole([low, high]) => {
                     // The middle of the part of a whole number, which moves by one in some of the draws.
                     let count = high - low + 1.0;
                     let middle = (centre[j] * (high - low) + 0.5) / count;

@@ -52,6 +52,11 @@ impl Optimise {
         self.coordinates.iter().zip(point).map(|(of, place)| value(of, *place)).collect()
     }
 
+    /// The place of these values.
+    fn place(&self, values: &[Value]) -> Vec<f64> {
+        self.coordinates.iter().zip(values).map(|(of, value)| of.place(value)).collect()
+    }
+
     /// The first points: those of the Sobol' sequence, each once.
     pub fn first_values(&self) -> Vec<Vec<Value>> {
         let mut all: Vec<Vec<Value>> = Vec::new();
@@ -78,11 +83,16 @@ fn sobol(inputs: usize, seed: u32) -> impl Iterator<Item = Vec<f64>> {
     (0..1 << 16).map(point)
 }
 
-/// The value at a place from 0 to 1 of a range: a number with four digits, a whole number, a word.
+/// The value at a place from 0 to 1 of a range: a number with four digits, more where the range is narrow, a whole number,
+/// a word.
 fn value(of: &Coordinate, place: f64) -> Value {
     let place = place.clamp(0.0, 1.0);
     let short = |number: f64, [low, high]: [f64; 2]| {
-        let short: f64 = format!("{number:.3e}").parse().unwrap_or(number);
+        let narrow =
+            libm::round(libm::log10(low.abs().max(high.abs()) / (high - low))).clamp(0.0, 12.0);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 12")]
+        let digits = 3 + narrow as usize;
+        let short: f64 = format!("{number:.digits$e}").parse().unwrap_or(number);
         Value::Number(short.clamp(low, high))
     };
     match of {

@@ -2,10 +2,12 @@
 
 use super::Optimise;
 use crate::input::json::Json;
+use crate::input::keys::numerical::is_of_method;
 use crate::input::keys::{Key, KeyKind, OPTIMISE_KEYS};
 use crate::input::object::{Object, list, members};
 use crate::input::source::Source;
 use crate::input::value::Value;
+use crate::job::point::Point;
 use crate::job::row::{COLUMNS, CellType, ColumnGroup, ColumnId, RowColumn};
 use crate::platform::error::InputError;
 use crate::platform::nearest::or_nearest;
@@ -40,6 +42,11 @@ impl Grid {
         for (name, value) in members(ranges, &over, source, RANGE)? {
             let path = format!("{over}.{name}");
             let column = self.column(name, &path, value, context)?;
+            if is_of_method(&self.columns[column].name) {
+                let problem = "is a choice of the method: a search would find its error, not a better capsule";
+                let allowed = "keys of the capsule, its gas and its strategy; the method belongs to solver and design";
+                return Err(source.error(&path, value, problem, allowed));
+            }
             let of = |item: &Json, path: &str| self.value_of(column, item, path, context);
             coordinates.push(range(self.columns[column].key, value, &path, source, &of)?);
             columns.push(column);
@@ -57,6 +64,21 @@ impl Grid {
         self.axes.push(Axis { columns: optimise.columns.clone(), rows, kind: AxisKind::Optimise });
         self.optimise = Some(optimise);
         Ok(())
+    }
+
+    /// Refuses a search of which no first point has a fold pattern: nothing says where one is.
+    pub(in crate::study) fn refuse_without_fold(
+        &self,
+        points: &[Point],
+        source: &Source,
+    ) -> Result<(), InputError> {
+        let none = points.iter().all(|point| point.infeasible.is_some());
+        if self.optimise.is_none() || !none {
+            return Ok(());
+        }
+        let problem = format!("has no fold pattern at any of its {} first points", points.len());
+        let allowed = "ranges in which a part of the designs folds: billow fold";
+        Err(source.error(&format!("{OPTIMISE}.over"), "", problem, allowed))
     }
 }
 

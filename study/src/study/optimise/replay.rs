@@ -1,12 +1,12 @@
 //! The search of an optimum, replayed from its finished jobs: generation after generation, as they were planned.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::{Optimise, acquisition, by_measure};
 use crate::input::value::Value;
 use crate::job::JobId;
 use crate::job::point::{Point, Searched};
-use crate::job::result_limit::Judged;
+use crate::job::result_limit::{Judged, Safety};
 use crate::study::Study;
 use crate::study::finished::FinishedRow;
 
@@ -19,6 +19,10 @@ pub(crate) struct Replay<'a> {
     optimise: &'a Optimise,
     finished: HashMap<&'a JobId, &'a FinishedRow>,
     tried: Vec<Tried>,
+    /// Jobs of all points, also of those without a fold pattern.
+    known: HashSet<JobId>,
+    /// Value of each column of the grid at its first point.
+    first: Vec<Value>,
     /// Number of generations planned.
     generations: u32,
 }
@@ -47,9 +51,11 @@ pub struct Trial {
     pub jobs: Vec<JobId>,
     /// Median of the runs of each measure that becomes small; `None` where a run has none.
     pub measures: Vec<Option<f64>>,
-    /// For each limit the margin of the run that is nearest to it or farthest beyond, its known uncertainty taken off;
-    /// `None` where a run cannot be judged.
+    /// For each limit the margin of the run that is nearest to it or farthest beyond, its known uncertainty taken off, between
+    /// −1 and 1; `None` where a run cannot be judged.
     pub margins: Vec<Option<f64>>,
+    /// Whether every run has a result, and keeps every limit as far as is known.
+    pub keeps_limits: bool,
     /// What it varies that is at an end of its range, and whether that is the upper one.
     pub at_end: Vec<(String, bool)>,
     /// Whether all of its runs have ended.
@@ -57,11 +63,6 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Whether every run keeps every limit, as far as is known.
-    pub fn keeps_limits(&self) -> bool {
-        self.is_measured() && self.margins.iter().all(|margin| margin.is_some_and(|m| m > 0.0))
-    }
-
     /// Whether each run has a value of what becomes small.
     pub fn is_measured(&self) -> bool {
         self.measures.iter().all(Option::is_some)
@@ -76,10 +77,10 @@ pub struct Optimum {
     /// Of the points that keep the limits the positions of the best, the best first; of two measures those of the front,
     /// by the first measure.
     pub best: Vec<usize>,
-    /// Number of points of the first generation.
-    pub first: usize,
     /// Number of points in all.
     pub budget: usize,
+    /// Whether no other point is to be tried: the budget is used up, or all others are refused or are jobs that it knows.
+    pub ended: bool,
 }
 
 impl<'a> Replay<'a> {
@@ -87,52 +88,62 @@ impl<'a> Replay<'a> {
     pub fn new(study: &'a Study, finished: &'a [FinishedRow]) -> Option<Self> {
         let optimise = study.grid.optimise.as_ref()?;
         let finished = finished.iter().map(|row| (&row.id, row)).collect();
-        let mut replay = Self { study, optimise, finished, tried: Vec::new(), generations: 0 };
+        let first = study.points().first().map(values_of).unwrap_or_default();
+        let (tried, known) = (Vec::new(), HashSet::new());
+        let mut replay = Self { study, optimise, finished, tried, known, first, generations: 0 };
         replay.add(study.points());
         Some(replay)
     }
 
-    /// Adds the points of a generation.
+    /// Adds the points of a generation. One whose jobs are all those of others does not count.
     pub fn add(&mut self, points: &[Point]) {
-        let mut positions: HashMap<Vec<String>, usize> = HashMap::new();
-        for point in points {
-            let values: Vec<Value> =
-                point.job.parameters.iter().map(|(_, value)| value.clone()).collect();
-            let varied = self.optimise.columns.iter().map(|column| &values[*column]);
-            let key = varied.clone().map(Value::to_string).collect();
-            let place = self.optimise.coordinates.iter().zip(varied);
-            let place: Vec<f64> = place.map(|(of, value)| of.place(value)).collect();
-            let position = *positions.entry(key).or_insert(self.tried.len());
-            if position == self.tried.len() {
-                let generation = self.generations;
-                self.tried.push(Tried { values, place, generation, runs: Vec::new() });
+        let columns = &self.optimise.columns;
+        let varied = |point: &Point| -> Vec<Value> {
+            let values = values_of(point);
+            columns.iter().map(|column| values[*column].clone()).collect()
+        };
+        // Runs of one point stand together.
+        for runs in points.chunk_by(|a, b| varied(a) == varied(b)) {
+            let is_new = runs.iter().any(|run| !self.known.contains(&run.job.id));
+            self.known.extend(runs.iter().map(|run| run.job.id.clone()));
+            if !is_new {
+                continue;
             }
-            let runs = &mut self.tried[position].runs;
-            if point.infeasible.is_none() && !runs.contains(&point.job.id) {
-                runs.push(point.job.id.clone());
+            let place = self.optimise.place(&varied(&runs[0]));
+            let mut jobs: Vec<JobId> = Vec::new();
+            for run in runs.iter().filter(|run| run.infeasible.is_none()) {
+                if !jobs.contains(&run.job.id) {
+                    jobs.push(run.job.id.clone());
+                }
             }
+            let (values, generation) = (values_of(&runs[0]), self.generations);
+            self.tried.push(Tried { values, place, generation, runs: jobs });
         }
         self.generations += 1;
     }
 
-    /// The points of the next generation; none where the budget is used up.
+    /// The points of the next generation; none where the budget is used up, or no other point is to be tried.
     pub fn next_points(&mut self) -> Vec<Point> {
         let used = self.tried.len();
         let batch = self.optimise.batch.min(self.optimise.budget.saturating_sub(used));
         if batch == 0 {
             return Vec::new();
         }
-        let trials = self.trials();
-        let proposed = acquisition::proposed(self.optimise, &trials, batch, self.generations);
-        let mut points = Vec::new();
-        for chosen in proposed {
-            let mut values = self.tried[0].values.clone();
-            for (column, value) in self.optimise.columns.iter().zip(chosen) {
-                values[*column] = value;
-            }
-            points.extend(self.study.points_at(&values, Searched::No));
+        let is_new = |chosen: &[Value]| {
+            self.points_of(chosen).iter().any(|point| !self.known.contains(&point.job.id))
+        };
+        let (optimise, generation) = (self.optimise, (batch, self.generations));
+        let proposed = acquisition::proposed(optimise, &self.trials(), generation, &is_new);
+        proposed.iter().flat_map(|chosen| self.points_of(chosen)).collect()
+    }
+
+    /// The runs of a point with these values of what is varied; none where the study refuses them.
+    fn points_of(&self, chosen: &[Value]) -> Vec<Point> {
+        let mut values = self.first.clone();
+        for (column, value) in self.optimise.columns.iter().zip(chosen) {
+            values[*column] = value.clone();
         }
-        points
+        self.study.points_at(&values, Searched::No)
     }
 
     /// What is known of each point.
@@ -153,13 +164,20 @@ impl<'a> Replay<'a> {
                 Some(margins.into_iter().fold(f64::INFINITY, f64::min))
             };
             let limits = self.study.result_limits().len();
+            let measures: Vec<Option<f64>> =
+                (0..self.optimise.minimise.len()).map(measure).collect();
+            let safe = |judged: &Judged| judged.as_far_as_known() == Safety::Safe;
+            let keeps =
+                |row: &&FinishedRow| row.limits.iter().all(|one| one.as_ref().is_some_and(safe));
+            let keeps_limits = measures.iter().all(Option::is_some) && known.iter().all(keeps);
             Trial {
                 values: self.optimise.columns.iter().map(|c| tried.values[*c].clone()).collect(),
                 place: tried.place.clone(),
                 generation: tried.generation,
                 jobs: tried.runs.clone(),
-                measures: (0..self.optimise.minimise.len()).map(measure).collect(),
+                measures,
                 margins: (0..limits).map(margin).collect(),
+                keeps_limits,
                 at_end: self.at_end(&tried.place),
                 ended,
             }
@@ -177,11 +195,11 @@ impl<'a> Replay<'a> {
         ends.map(|((_, place), column)| (name(*column), *place > 0.5)).collect()
     }
 
-    /// What the search has found.
-    pub fn optimum(&self) -> Optimum {
+    /// What the search has found; `ended` says whether it has no other point to try.
+    pub fn optimum(&self, ended: bool) -> Optimum {
         let trials = self.trials();
         let best = best(&trials);
-        Optimum { trials, best, first: self.optimise.first(), budget: self.optimise.budget }
+        Optimum { trials, best, budget: self.optimise.budget, ended }
     }
 
     /// Whether every job planned so far has ended.
@@ -190,20 +208,26 @@ impl<'a> Replay<'a> {
         runs.into_iter().all(|id| self.finished.contains_key(id))
     }
 
-    /// The jobs of the best points, the best first.
+    /// The jobs of the points that run on finer meshes: the best first; of a front both ends and the middle.
     pub fn to_confirm(&self) -> Vec<Vec<JobId>> {
         let trials = self.trials();
-        let best = best(&trials);
+        let mut best = best(&trials);
+        if self.optimise.minimise.len() > 1 && best.len() > 2 {
+            best = vec![best[0], best[best.len() - 1], best[best.len() / 2]];
+        }
         best.into_iter().map(|trial| trials[trial].jobs.clone()).collect()
     }
 }
 
-/// The margin of a run without its known uncertainty: above 0 where the limit is kept for certain.
+/// The margin of a run without its known uncertainty.
 fn certain(judged: &Judged) -> f64 {
-    let margin = judged.margin.clamp(-1.0, 1.0);
-    // A word is met or not.
     let uncertainty = judged.uncertainty.filter(|u| u.is_finite()).unwrap_or(0.0);
-    if judged.met { margin - uncertainty } else { margin.min(-f64::EPSILON) }
+    (if judged.met { judged.margin - uncertainty } else { judged.margin }).clamp(-1.0, 1.0)
+}
+
+/// Value of each column of the grid at a point.
+fn values_of(point: &Point) -> Vec<Value> {
+    point.job.parameters.iter().map(|(_, value)| value.clone()).collect()
 }
 
 /// The middle value; of an even number the mean of the two.
@@ -215,7 +239,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 /// The best of the points that keep the limits: in order, or the front of two measures.
 fn best(trials: &[Trial]) -> Vec<usize> {
-    let mut kept: Vec<usize> = (0..trials.len()).filter(|k| trials[*k].keeps_limits()).collect();
+    let mut kept: Vec<usize> = (0..trials.len()).filter(|k| trials[*k].keeps_limits).collect();
     let measures = |k: &usize| &trials[*k].measures;
     if kept.first().is_none_or(|first| measures(first).len() == 1) {
         kept.sort_by(|a, b| by_measure(measures(a)[0], measures(b)[0]));
@@ -227,8 +251,11 @@ fn best(trials: &[Trial]) -> Vec<usize> {
             // Of equal points the first stands for all.
             && (a < b || pairs().any(|(a, b)| by_measure(*a, *b).is_lt()))
     };
-    let mut front: Vec<usize> =
-        kept.iter().copied().filter(|k| !kept.iter().any(|other| other != k && dominates(other, k))).collect();
+    let mut front: Vec<usize> = kept
+        .iter()
+        .copied()
+        .filter(|k| !kept.iter().any(|other| other != k && dominates(other, k)))
+        .collect();
     front.sort_by(|a, b| by_measure(measures(a)[0], measures(b)[0]));
     front
 }

@@ -21,9 +21,9 @@ fn optimise(inputs: usize, measures: usize, budget: usize, seed: u32) -> Optimis
 /// The search of a function, with all of its budget.
 fn search(optimise: &Optimise, of: Function) -> Vec<Trial> {
     let trial = |values: Vec<Value>, generation: u32| {
-        let places = optimise.coordinates.iter().zip(&values);
-        let place: Vec<f64> = places.map(|(coordinate, value)| coordinate.place(value)).collect();
+        let place = optimise.place(&values);
         let (measures, margins) = of(&place);
+        let keeps_limits = margins.iter().all(|margin| *margin > 0.0);
         Trial {
             values,
             place,
@@ -31,6 +31,7 @@ fn search(optimise: &Optimise, of: Function) -> Vec<Trial> {
             jobs: Vec::new(),
             measures: measures.into_iter().map(Some).collect(),
             margins: margins.into_iter().map(Some).collect(),
+            keeps_limits,
             at_end: Vec::new(),
             ended: true,
         }
@@ -40,7 +41,7 @@ fn search(optimise: &Optimise, of: Function) -> Vec<Trial> {
     let mut generation = 1;
     while trials.len() < optimise.budget {
         let batch = optimise.batch.min(optimise.budget - trials.len());
-        let proposed = acquisition::proposed(optimise, &trials, batch, generation);
+        let proposed = acquisition::proposed(optimise, &trials, (batch, generation), &|_| true);
         assert!(!proposed.is_empty());
         trials.extend(proposed.into_iter().map(|values| trial(values, generation)));
         generation += 1;
@@ -50,7 +51,7 @@ fn search(optimise: &Optimise, of: Function) -> Vec<Trial> {
 
 /// The smallest value of the first measure among points that keep the limits.
 fn smallest(trials: &[Trial]) -> f64 {
-    let kept = trials.iter().filter(|trial| trial.keeps_limits());
+    let kept = trials.iter().filter(|trial| trial.keeps_limits);
     kept.filter_map(|trial| trial.measures[0]).fold(f64::INFINITY, f64::min)
 }
 

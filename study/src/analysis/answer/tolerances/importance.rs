@@ -6,12 +6,14 @@ use serde::Serialize;
 use super::parts::{self, Part};
 use crate::analysis::values::canonical;
 use crate::store::table::Column;
-use crate::surrogate::{Coordinate, Surrogate};
+use crate::surrogate::{self, Coordinate, Index, Surrogate};
 
 /// Points for each input below which there are no parts. Chosen: the intervals are then wider than the parts.
 const POINTS_PER_INPUT: usize = 5;
+/// Points that are used at most.
+const MAX_POINTS: usize = 4096;
 /// Part of the variance that a surrogate must foresee at points left out. Chosen: below, it misses more than it sees.
-const MIN_SEEN: f64 = 0.5;
+pub const MIN_SEEN: f64 = 0.5;
 /// What the inputs do not make.
 const CHANCE: &str = "chance, and what the surrogate does not see";
 
@@ -42,7 +44,12 @@ impl Importance {
         if rows.len() < needed {
             return Err(format!("what each input makes: {} samples, {needed} needed", rows.len()));
         }
-        let surrogate = Self::of_surrogate(inputs, rows, values).filter(|_| independent);
+        // Of many some: more change no digit that is shown.
+        let chosen = surrogate::chosen(rows.len(), MAX_POINTS);
+        let rows: Vec<usize> = chosen.iter().map(|k| rows[*k]).collect();
+        let values: Vec<f64> = chosen.iter().map(|k| values[*k]).collect();
+        let (rows, values) = (rows.as_slice(), values.as_slice());
+        let surrogate = if independent { Self::of_surrogate(inputs, rows, values) } else { None };
         if let Some(found) = surrogate.clone().filter(|found| !found.parts.is_empty()) {
             return Ok(found);
         }
@@ -67,14 +74,14 @@ impl Importance {
         let points: Vec<Vec<f64>> = rows.iter().map(place).collect();
         let words: Vec<bool> = coordinates.iter().map(Coordinate::is_word).collect();
         let surrogate = Surrogate::fit(&points, values, &words)?;
-        let seen = surrogate.leave_one_out().seen;
+        let seen = surrogate.foresees();
         let mut found = Self { seen: Some(seen), indices: true, parts: Vec::new() };
         if seen < MIN_SEEN {
             return Some(found);
         }
         let of_input = |input: usize| points.iter().map(|point| point[input]).collect();
         let indices = surrogate.indices(&(0..inputs.len()).map(of_input).collect::<Vec<_>>())?;
-        let part = |(input, index): (&&Column, &crate::surrogate::Index)| Part {
+        let part = |(input, index): (&&Column, &Index)| Part {
             between: Some(index.first.1),
             total: Some(index.total),
             ..Part::new(&input.name, index.first.0)
