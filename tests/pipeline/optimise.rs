@@ -53,7 +53,7 @@ fn the_optimum_of_a_piston_is_at_its_limit() {
     assert!(after.len() > 2 && after.windows(2).all(|pair| pair[1] <= pair[0]), "{after:?}");
     assert_eq!(course.last().unwrap()[0], 24);
     let text = folder.stdout(&["run", "grid.json", "--no-report"]);
-    for part in ["answer", "nearest limit final_pressure", "spread evenly", "none was better"] {
+    for part in ["answer", "nearest limit final_pressure", "spread evenly", "this is point"] {
         assert!(text.contains(part), "{part}: {text}");
     }
 }

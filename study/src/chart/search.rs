@@ -64,7 +64,7 @@ pub fn svg(source: &Source<'_>) -> Result<String> {
     };
     let line = if two { "the front" } else { "the smallest so far" };
     let entries = vec![
-        (Sample::Marker(Fill::Filled), "keeps every limit".to_owned()),
+        (Sample::Marker(Fill::Filled), "keeps every limit, as far as is known".to_owned()),
         (Sample::Marker(Fill::Open), "does not".to_owned()),
         (Sample::Line(Series::nth(1)), line.to_owned()),
     ];

@@ -69,7 +69,8 @@ impl Study {
     ) -> Vec<Vec<Point>> {
         let Some(meshes) = &self.pilots else { return Vec::new() };
         if let Some(best) = best {
-            return pilots::confirming(&self.settings, meshes, best, planned, finished);
+            let best = (best, self.minimised().len() > 1);
+            return pilots::confirming((&self.settings, meshes), best, planned, finished);
         }
         let of = (&self.settings, &self.grid);
         vec![pilots::points(of, meshes, &self.result_limits, planned, finished)]

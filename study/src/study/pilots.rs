@@ -150,12 +150,11 @@ pub(super) fn points(
     on_other_meshes(settings, meshes, &chosen)
 }
 
-/// The runs of the best points of a search on their other meshes, the jobs of each a generation: one point after the other
-/// until one keeps the limits on the finest mesh.
+/// The runs of the best points of a search on their other meshes, the jobs of each a generation: of a front `all` of them,
+/// otherwise one point after the other until one keeps the limits on the finest mesh.
 pub(super) fn confirming(
-    settings: &Settings,
-    meshes: &[u32],
-    best: &[Vec<JobId>],
+    (settings, meshes): (&Settings, &[u32]),
+    (best, all): (&[Vec<JobId>], bool),
     planned: &[Point],
     finished: &[FinishedRow],
 ) -> Vec<Vec<Point>> {
@@ -174,7 +173,7 @@ pub(super) fn confirming(
         let open = runs.iter().any(|run| !by_id.contains_key(&run.job.id));
         let kept = runs.iter().filter(on_finest).all(keeps);
         generations.push(runs);
-        if open || kept {
+        if !all && (open || kept) {
             break;
         }
     }

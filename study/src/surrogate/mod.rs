@@ -56,7 +56,7 @@ struct System {
 
 impl Surrogate {
     /// The surrogate of these values, one at each point; `words` says which inputs are words. Of more than
-    /// 400 so many are used. `None` where all values are alike, or fewer than three.
+    /// 400 a part is used. `None` where all values are alike, or fewer than three.
     pub fn fit(points: &[Vec<f64>], values: &[f64], words: &[bool]) -> Option<Self> {
         let chosen = chosen(points.len(), MAX_POINTS);
         let points: Vec<Vec<f64>> = chosen.iter().map(|k| points[*k].clone()).collect();
@@ -196,7 +196,7 @@ fn scaled(a: f64, b: f64, length: f64) -> f64 {
     ROOT_OF_5 * (a - b).abs() / length
 }
 
-/// At most so many of some positions, in order: by a hash, as every second or third of the points of a grid may have one
+/// At most `most` of some positions, in order: by a hash, as every second or third of the points of a grid may have one
 /// value of an axis.
 pub fn chosen(all: usize, most: usize) -> Vec<usize> {
     let mut positions: Vec<usize> = (0..all).collect();

@@ -53,7 +53,7 @@ fn of_point(point: &Tolerance) -> Vec<String> {
             parts(&spread.budget)
         );
         if spread.budget.first().is_some_and(|largest| largest.name == MESH) {
-            text.push_str(" (a finer mesh narrows it, more samples do not)");
+            text.push_str(" (more samples do not narrow it)");
         }
         for reason in &spread.without {
             let _ = write!(text, "; {reason}");

@@ -15,7 +15,7 @@ const MAX_POINTS: usize = 4096;
 /// Part of the variance that a surrogate must foresee at points left out. Chosen: below, it misses more than it sees.
 pub const MIN_SEEN: f64 = 0.5;
 /// What the inputs do not make.
-const CHANCE: &str = "chance, and what the surrogate does not see";
+const CHANCE: &str = "chance and what the surrogate does not see";
 
 /// What makes the spread of a measure.
 #[derive(Debug, Clone, PartialEq, Serialize, Default)]

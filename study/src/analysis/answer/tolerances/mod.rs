@@ -210,7 +210,9 @@ fn measures(table: &Table, limits: &[ResultLimit]) -> Vec<ColumnId> {
         }
     }
     if limited.is_empty() {
-        limited = vec![table.of_any_film(HEADLINE[0]), table.of_any_film(ColumnId::PeakVz)];
+        let [soon, hard] =
+            [HEADLINE[0], ColumnId::PeakVz].map(|measure| table.of_any_film(measure));
+        limited = vec![soon, hard, ColumnId::PeakKineticEnergy];
     }
     limited
 }
