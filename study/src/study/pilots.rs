@@ -6,7 +6,8 @@
 //! ```
 //! Their three meshes give extrapolated values with an error; the other points take the largest error of the pilots
 //! ([`crate::store::table::pilots`]). The pilots of the search of an optimum are its best point, whatever is known of its
-//! error; where it does not keep the limits on the finest mesh, the next best is added. A study that gives `solver.meshes` or varies the mesh has none.
+//! error; where it does not keep the limits on the finest mesh, the next best is added. A study that gives
+//! `solver.meshes` or varies the mesh has none.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;

@@ -65,4 +65,36 @@ impl Coordinate {
             Self::Linear(_) | Self::Whole(_) => 0.0,
         }
     }
+
+    /// The value at a place from 0 to 1: a number with four digits, more where the range is narrow; a whole number, of which
+    /// each has an equal part of the range; a word likewise.
+    pub fn value(&self, place: f64) -> Value {
+        let place = place.clamp(0.0, 1.0);
+        let short = |number: f64, [low, high]: [f64; 2]| {
+            let narrow =
+                libm::round(libm::log10(low.abs().max(high.abs()) / (high - low))).clamp(0.0, 12.0);
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 12")]
+            let digits = 3 + narrow as usize;
+            let short: f64 = format!("{number:.digits$e}").parse().unwrap_or(number);
+            Value::Number(short.clamp(low, high))
+        };
+        match self {
+            Self::Linear([low, high]) => short(low + place * (high - low), [*low, *high]),
+            Self::Log([low, high]) => short(low * libm::pow(high / low, place), [*low, *high]),
+            Self::Whole([low, high]) => {
+                let number = libm::floor(low + place * (high - low + 1.0)).min(*high);
+                #[expect(clippy::cast_possible_truncation, reason = "whole numbers of a key")]
+                Value::Integer(number as i64)
+            }
+            Self::Word(words) => {
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "below the number of words"
+                )]
+                let position = (place * words.len() as f64) as usize;
+                words[position.min(words.len() - 1)].clone()
+            }
+        }
+    }
 }

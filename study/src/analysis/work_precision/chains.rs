@@ -32,7 +32,7 @@ pub(super) fn of(members: &[Member]) -> Vec<Chain> {
     for parameter in 0..parameters {
         let mut groups: Vec<Vec<usize>> = Vec::new();
         for (index, member) in members.iter().enumerate() {
-            if number(&member.configuration[parameter].1).is_none() {
+            if member.configuration[parameter].1.any_number().is_none() {
                 continue;
             }
             let equal = |group: &&mut Vec<usize>| {
@@ -73,14 +73,6 @@ fn chain(members: &[Member], parameter: usize, mut group: Vec<usize>) -> Option<
     let refines = resolution.windows(2).all(|pair| pair[0] > 0.0 && pair[1] / pair[0] > least);
     let parameter = members[group[0]].configuration[parameter].0.clone();
     refines.then_some(Chain { parameter, members: group, of_meshes, resolution })
-}
-
-fn number(value: &Value) -> Option<f64> {
-    match value {
-        Value::Number(number) => Some(*number),
-        Value::Integer(number) => Some(*number as f64),
-        _ => None,
-    }
 }
 
 /// Logarithms of resolution and error of the trusted members whose error the reference can resolve.

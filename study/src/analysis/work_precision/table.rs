@@ -187,7 +187,7 @@ fn runs(
             without += 1;
             continue;
         };
-        let number = |id: ColumnId| table.value(id, row).and_then(number);
+        let number = |id: ColumnId| table.value(id, row).and_then(Value::any_number);
         let job = match table.column("job").map(|column| &column.cells[row]) {
             Some(Value::Text(id)) => id.as_str(),
             _ => "",
@@ -233,16 +233,7 @@ fn runs(
 
 /// A number of a table, by its column.
 fn number_in(table: &Table, column: &str, row: usize) -> Option<f64> {
-    number(&table.column(column)?.cells[row])
-}
-
-/// A value as a number.
-fn number(value: &Value) -> Option<f64> {
-    match value {
-        Value::Number(number) => Some(*number),
-        Value::Integer(number) => Some(*number as f64),
-        _ => None,
-    }
+    table.column(column)?.cells[row].any_number()
 }
 
 /// The parameter of words that alone names each scene.

@@ -246,7 +246,12 @@ fn job_text(extreme: &Extreme) -> String {
         others => format!(" (and {} with the same value)", count(others, "job")),
     };
     let parameters = parameters_text(&extreme.parameters);
-    format!("job {} {parameters}{others}", &extreme.job[..8.min(extreme.job.len())])
+    format!("job {} {parameters}{others}", short_id(&extreme.job))
+}
+
+/// The first digits of a job id.
+fn short_id(job: &str) -> &str {
+    &job[..8.min(job.len())]
 }
 
 fn parameters_text(parameters: &[(String, Value, DisplayUnit)]) -> String {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::parameters_text;
+use super::{parameters_text, short_id};
 use crate::analysis::answer::{Best, Optimum, Small};
 use crate::input::value::brief_number;
 use crate::job::result_limit::Safety;
@@ -82,7 +82,7 @@ pub(super) fn of_point(best: &Best) -> String {
     for part in limit.into_iter().chain(ends) {
         let _ = write!(text, "; {part}");
     }
-    let job = &best.job[..8.min(best.job.len())];
+    let job = short_id(&best.job);
     let first = if best.runs > 1 { ", the first is" } else { "," };
     let _ = write!(text, "; {}{first} job {job}", count(best.runs, "run"));
     text

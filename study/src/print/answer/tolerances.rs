@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::parameters_text;
+use super::{parameters_text, short_id};
 use crate::analysis::answer::{Importance, MESH, MIN_SEEN, Part, Quantile, Tolerance};
 use crate::input::units::DisplayUnit;
 use crate::input::value::brief_number;
@@ -10,7 +10,7 @@ use crate::job::proportion::Proportion;
 use crate::print::{MAX_VALUES, count};
 
 /// Part of a spread below which an input is only named.
-const SMALL: f64 = 0.01;
+const MIN_SHOWN_PART: f64 = 0.01;
 
 /// For each point a line, then one for each measure.
 pub(super) fn lines(points: &[Tolerance]) -> Vec<String> {
@@ -32,7 +32,7 @@ fn of_point(point: &Tolerance) -> Vec<String> {
         let _ = write!(text, "{}", count(point.samples, "sample"));
     }
     if let Some((job, margin, measure)) = &point.nearest {
-        let job = &job[..8.min(job.len())];
+        let job = short_id(job);
         let _ = write!(
             text,
             "; smallest margin {} % of {measure}: job {job}",
@@ -100,7 +100,7 @@ pub(super) fn of_grid(measures: &[(String, Importance)]) -> Vec<String> {
 fn importance(found: &Importance) -> String {
     let (shown, small): (Vec<&Part>, Vec<&Part>) = found.parts.iter().partition(|part| {
         let largest = part.total.map_or(part.part, |(total, _)| total);
-        largest >= SMALL || part.between.is_none()
+        largest >= MIN_SHOWN_PART || part.between.is_none()
     });
     let mut texts: Vec<String> = shown.into_iter().map(part).collect();
     if !small.is_empty() {

@@ -1,9 +1,7 @@
 //! Which points a search runs next.
 //!
 //! ```text
-//! one measure    a(x) = ln EI(x) + Σ_j ln P(margin_j(x) > 0)          J. R. Gardner et al. (2014)
-//!                EI = (b − m) Φ(u) + s φ(u),  u = (b − m)/s            J. Močkus (1975); m, s of the surrogate at x
-//!                b: the smallest m among the points that keep the limits; without one EI = 1
+//! one measure    where a(x) of `expected.rs` is largest
 //! two measures   y = max_k w_k y_k + 0.05 Σ_k w_k y_k, y_k from 0 to 1, other weights w for each point of a batch: ParEGO
 //!                (J. Knowles, 2006)
 //! a batch        each point is taken as known, at its mean, before the next is chosen (D. Ginsbourger et al., 2010)
@@ -18,25 +16,26 @@ use std::sync::{Mutex, PoisonError};
 use billow_solver::platform::random::{hash, unit};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
+use super::expected::Surrogates;
 use super::{Optimise, Trial, sobol};
 use crate::input::value::Value;
 use crate::job::JobId;
 use crate::surrogate::{Coordinate, Surrogate, normal};
 
 /// Points at which a(x) is computed: of the Sobol' sequence, and near the best points.
-const SPREAD: usize = 400;
-const NEAR: usize = 200;
+const SPREAD_CANDIDATES: usize = 400;
+const NEAR_CANDIDATES: usize = 200;
 /// Distances from the best points, as parts of a range.
-const DISTANCES: [f64; 3] = [0.1, 0.03, 0.01];
+const NEAR_DISTANCES: [f64; 3] = [0.1, 0.03, 0.01];
 /// Best points near which it is computed.
-const BEST: usize = 4;
+const MAX_CENTRES: usize = 4;
 /// Weight of the sum of both measures.
-const SUM: f64 = 0.05;
+const SUM_WEIGHT: f64 = 0.05;
 /// Margin of a point that keeps no limit.
-const FAILED: f64 = -1.0;
+const FAILED_MARGIN: f64 = -1.0;
 
 /// Distance from a refused place, as a part of each range, within which no other is proposed in the batch.
-const REFUSED: f64 = 0.05;
+const MIN_DISTANCE_FROM_REFUSED: f64 = 0.05;
 /// Proposals that are refused before a batch ends. Chosen: more are a range of which most is not allowed.
 const MAX_REFUSED: usize = 64;
 
@@ -56,9 +55,11 @@ pub(super) fn proposed(
     for trial in trials {
         // A job id stands for all other settings of the study.
         let ids: Vec<&str> = trial.jobs.iter().map(JobId::as_str).collect();
-        let numbers = trial.place.iter().chain(trial.measures.iter().flatten());
-        let numbers = numbers.chain(trial.margins.iter().flatten()).map(|number| number.to_bits());
-        (ids, trial.keeps_limits, numbers.collect::<Vec<u64>>()).hash(&mut key);
+        let place = trial.place.iter().map(|place| place.to_bits());
+        let known = trial.measures.iter().chain(&trial.margins);
+        let known = known.map(|number| number.map(f64::to_bits));
+        (ids, place.collect::<Vec<_>>(), known.collect::<Vec<_>>()).hash(&mut key);
+        trial.keeps_limits.hash(&mut key);
     }
     let key = key.finish();
     let known = || PROPOSED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -74,15 +75,6 @@ struct Search<'a> {
     optimise: &'a Optimise,
     trials: &'a [Trial],
     generation: u32,
-}
-
-/// The surrogates of one point of a batch.
-#[derive(Clone)]
-struct Surrogates {
-    measure: Option<Surrogate>,
-    margins: Vec<Surrogate>,
-    /// b.
-    best: Option<f64>,
 }
 
 impl Search<'_> {
@@ -123,8 +115,11 @@ impl Search<'_> {
         let limits = self.trials.first().map_or(0, |trial| trial.margins.len());
         let points: Vec<Vec<f64>> = self.trials.iter().map(|trial| trial.place.clone()).collect();
         let of = |limit: usize| {
-            let values: Vec<f64> =
-                self.trials.iter().map(|trial| trial.margins[limit].unwrap_or(FAILED)).collect();
+            let values: Vec<f64> = self
+                .trials
+                .iter()
+                .map(|trial| trial.margins[limit].unwrap_or(FAILED_MARGIN))
+                .collect();
             Surrogate::fit(&points, &values, &self.words())
         };
         let all: Vec<Option<Surrogate>> = (0..limits).into_par_iter().map(of).collect();
@@ -171,7 +166,7 @@ impl Search<'_> {
         let scalar = |trial: &Trial| {
             let parts = [0, 1].map(|k| of(trial, k).map(|value| weights[k] * scaled[k](value)));
             let [a, b] = [parts[0]?, parts[1]?];
-            Some(a.max(b) + SUM * (a + b))
+            Some(a.max(b) + SUM_WEIGHT * (a + b))
         };
         self.trials.iter().map(scalar).collect()
     }
@@ -187,7 +182,9 @@ impl Search<'_> {
         let words = self.words();
         let near = |a: &[f64], b: &[f64]| {
             let mut places = a.iter().zip(b).zip(&words);
-            places.all(|((a, b), word)| (a - b).abs() < if *word { 0.5 } else { REFUSED })
+            places.all(|((a, b), word)| {
+                (a - b).abs() < if *word { 0.5 } else { MIN_DISTANCE_FROM_REFUSED }
+            })
         };
         let is_new = |values: &Vec<Value>| {
             let known = || self.trials.iter().any(|trial| trial.values == *values);
@@ -209,17 +206,18 @@ impl Search<'_> {
         let seed = hash(u64::from(self.optimise.seed), 1 + u64::from(self.generation));
         let seed = hash(seed, (number + refused.len()) as u64);
         #[expect(clippy::cast_possible_truncation, reason = "any bits are a seed")]
-        let spread = sobol(self.optimise.columns.len(), seed as u32).take(SPREAD);
+        let spread = sobol(self.optimise.columns.len(), seed as u32).take(SPREAD_CANDIDATES);
         spread.for_each(|point| consider(self.optimise.values(&point)));
-        for (k, centre) in self.centres(surrogates).iter().cycle().take(NEAR).enumerate() {
-            let distance = DISTANCES[k % DISTANCES.len()];
+        for (k, centre) in self.centres(surrogates).iter().cycle().take(NEAR_CANDIDATES).enumerate()
+        {
+            let distance = NEAR_DISTANCES[k % NEAR_DISTANCES.len()];
             consider(self.near(centre, distance, hash(seed, k as u64)));
         }
         // From the best on, in ever smaller circles.
-        for round in 0..NEAR as u64 {
+        for round in 0..NEAR_CANDIDATES as u64 {
             let Some((_, values)) = &best else { break };
             let centre = self.optimise.place(values);
-            let distance = 0.1 * libm::exp(-4.0 * round as f64 / NEAR as f64);
+            let distance = 0.1 * libm::exp(-4.0 * round as f64 / NEAR_CANDIDATES as f64);
             let values = self.near(&centre, distance, hash(!seed, round));
             if is_new(&values) {
                 let score = score(&values);
@@ -234,7 +232,7 @@ impl Search<'_> {
     /// The places of the best points so far: those that keep the limits by their measure, then those nearest to it.
     fn centres(&self, surrogates: &Surrogates) -> Vec<Vec<f64>> {
         let worst = |trial: &Trial| {
-            trial.margins.iter().map(|m| m.unwrap_or(FAILED)).fold(f64::INFINITY, f64::min)
+            trial.margins.iter().map(|m| m.unwrap_or(FAILED_MARGIN)).fold(f64::INFINITY, f64::min)
         };
         let key = |trial: &Trial| match (&surrogates.measure, trial.keeps_limits) {
             (Some(measure), true) => (0, measure.at(&trial.place).0),
@@ -242,7 +240,7 @@ impl Search<'_> {
         };
         let mut all: Vec<((i32, f64), &Trial)> = self.trials.iter().map(|t| (key(t), t)).collect();
         all.sort_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        all.into_iter().take(BEST).map(|(_, trial)| trial.place.clone()).collect()
+        all.into_iter().take(MAX_CENTRES).map(|(_, trial)| trial.place.clone()).collect()
     }
 
     /// A point near a place: each number moves by a normal distribution, a word changes in one of eight cases.
@@ -253,65 +251,19 @@ impl Search<'_> {
                 Coordinate::Word(words) => {
                     let count = words.len() as f64;
                     let place = if draw < 0.125 { draw / 0.125 } else { (centre[j] + 0.5) / count };
-                    super::value(of, place)
+                    of.value(place)
                 }
                 Coordinate::Whole([low, high]) => {
                     // The middle of the part of a whole number, which moves by one in some of the draws.
                     let count = high - low + 1.0;
                     let middle = (centre[j] * (high - low) + 0.5) / count;
                     let step = distance.max(0.7 / count) * normal::quantile(clamped(draw));
-                    super::value(of, middle + step)
+                    of.value(middle + step)
                 }
-                _ => super::value(of, centre[j] + distance * normal::quantile(clamped(draw))),
+                _ => of.value(centre[j] + distance * normal::quantile(clamped(draw))),
             }
         };
         self.optimise.coordinates.iter().enumerate().map(moved).collect()
-    }
-}
-
-impl Surrogates {
-    fn believing(&self, place: &[f64]) -> Self {
-        let believing = |of: &Surrogate| of.believing(place).unwrap_or_else(|| of.clone());
-        Self {
-            measure: self.measure.as_ref().map(believing),
-            margins: self.margins.iter().map(believing).collect(),
-            best: self.best,
-        }
-    }
-
-    /// a(x).
-    fn expects(&self, place: &[f64]) -> f64 {
-        let kept = |margin: &Surrogate| {
-            let (mean, deviation) = margin.at(place);
-            log_part_below(mean / deviation.max(1e-9))
-        };
-        let kept: f64 = self.margins.iter().map(kept).sum();
-        let (Some(measure), Some(best)) = (&self.measure, self.best) else { return kept };
-        let (mean, deviation) = measure.at(place);
-        let deviation = deviation.max(1e-12 * (1.0 + best.abs()));
-        kept + log_improvement((best - mean) / deviation) + libm::log(deviation)
-    }
-}
-
-/// ln Φ(u), also where Φ is 0 to f64.
-fn log_part_below(u: f64) -> f64 {
-    if u > -30.0 {
-        libm::log(normal::part_below(u))
-    } else {
-        -0.5 * u * u - libm::log(-u) - LOG_ROOT_OF_TAU
-    }
-}
-
-/// ln √(2π).
-const LOG_ROOT_OF_TAU: f64 = 0.918_938_533_204_672_8;
-
-/// ln (u Φ(u) + φ(u)): by its series where the sum loses its digits (S. Ament et al., 2023).
-fn log_improvement(u: f64) -> f64 {
-    let density = -0.5 * u * u - LOG_ROOT_OF_TAU;
-    if u > -8.0 {
-        libm::log(u * normal::part_below(u) + libm::exp(density))
-    } else {
-        density - 2.0 * libm::log(-u) + libm::log(1.0 - 3.0 / (u * u))
     }
 }
 

@@ -9,10 +9,9 @@
 //! A point counts by the median of its runs, and keeps a limit if every run does, its known uncertainty counted.
 
 mod acquisition;
+mod expected;
 mod read;
 mod replay;
-
-use std::cmp::Ordering;
 
 use crate::input::value::Value;
 use crate::job::row::ColumnId;
@@ -49,7 +48,7 @@ impl Optimise {
 
     /// The values of a point of the unit cube.
     fn values(&self, point: &[f64]) -> Vec<Value> {
-        self.coordinates.iter().zip(point).map(|(of, place)| value(of, *place)).collect()
+        self.coordinates.iter().zip(point).map(|(of, place)| of.value(*place)).collect()
     }
 
     /// The place of these values.
@@ -81,44 +80,6 @@ fn sobol(inputs: usize, seed: u32) -> impl Iterator<Item = Vec<f64>> {
     let inputs = inputs as u32;
     let point = move |k| (0..inputs).map(|j| f64::from(sobol_burley::sample(k, j, seed))).collect();
     (0..1 << 16).map(point)
-}
-
-/// The value at a place from 0 to 1 of a range: a number with four digits, more where the range is narrow, a whole number,
-/// a word.
-fn value(of: &Coordinate, place: f64) -> Value {
-    let place = place.clamp(0.0, 1.0);
-    let short = |number: f64, [low, high]: [f64; 2]| {
-        let narrow =
-            libm::round(libm::log10(low.abs().max(high.abs()) / (high - low))).clamp(0.0, 12.0);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 12")]
-        let digits = 3 + narrow as usize;
-        let short: f64 = format!("{number:.digits$e}").parse().unwrap_or(number);
-        Value::Number(short.clamp(low, high))
-    };
-    match of {
-        Coordinate::Linear([low, high]) => short(low + place * (high - low), [*low, *high]),
-        Coordinate::Log([low, high]) => short(low * libm::pow(high / low, place), [*low, *high]),
-        Coordinate::Whole([low, high]) => {
-            // Each whole number has an equal part of the range.
-            let number = libm::floor(low + place * (high - low + 1.0)).min(*high);
-            #[expect(clippy::cast_possible_truncation, reason = "whole numbers of a key")]
-            Value::Integer(number as i64)
-        }
-        Coordinate::Word(words) => {
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "below the number of words"
-            )]
-            let position = (place * words.len() as f64) as usize;
-            words[position.min(words.len() - 1)].clone()
-        }
-    }
-}
-
-/// The order of two measures, those that are not known last.
-fn by_measure(a: Option<f64>, b: Option<f64>) -> Ordering {
-    a.unwrap_or(f64::INFINITY).total_cmp(&b.unwrap_or(f64::INFINITY))
 }
 
 #[cfg(test)]

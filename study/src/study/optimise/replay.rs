@@ -1,8 +1,9 @@
 //! The search of an optimum, replayed from its finished jobs: generation after generation, as they were planned.
 
+use std::cmp::Ordering;
 use std::collections::{HashMap, HashSet};
 
-use super::{Optimise, acquisition, by_measure};
+use super::{Optimise, acquisition};
 use crate::input::value::Value;
 use crate::job::JobId;
 use crate::job::point::{Point, Searched};
@@ -11,7 +12,7 @@ use crate::study::Study;
 use crate::study::finished::FinishedRow;
 
 /// Distance from an end of a range, as a part of it, within which a point is at that end.
-const END: f64 = 0.01;
+const MAX_DISTANCE_FROM_END: f64 = 0.01;
 
 /// A search with the points planned so far.
 pub(crate) struct Replay<'a> {
@@ -190,7 +191,9 @@ impl<'a> Replay<'a> {
         let Optimise { columns, coordinates, .. } = self.optimise;
         let numbers =
             coordinates.iter().zip(place).zip(columns).filter(|((of, _), _)| !of.is_word());
-        let ends = numbers.filter(|((_, place), _)| **place < END || **place > 1.0 - END);
+        let ends = numbers.filter(|((_, place), _)| {
+            **place < MAX_DISTANCE_FROM_END || **place > 1.0 - MAX_DISTANCE_FROM_END
+        });
         let name = |column: usize| self.study.grid.columns[column].name.clone();
         ends.map(|((_, place), column)| (name(*column), *place > 0.5)).collect()
     }
@@ -204,8 +207,8 @@ impl<'a> Replay<'a> {
 
     /// Whether every job planned so far has ended.
     pub fn has_ended_so_far(&self) -> bool {
-        let runs = self.tried.iter().flat_map(|tried| &tried.runs);
-        runs.into_iter().all(|id| self.finished.contains_key(id))
+        let mut runs = self.tried.iter().flat_map(|tried| &tried.runs);
+        runs.all(|id| self.finished.contains_key(id))
     }
 
     /// The jobs of the points that run on finer meshes: the best first; of a front both ends and the middle.
@@ -235,6 +238,11 @@ fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let n = values.len();
     0.5 * (values[(n - 1) / 2] + values[n / 2])
+}
+
+/// The order of two measures, those that are not known last.
+fn by_measure(a: Option<f64>, b: Option<f64>) -> Ordering {
+    a.unwrap_or(f64::INFINITY).total_cmp(&b.unwrap_or(f64::INFINITY))
 }
 
 /// The best of the points that keep the limits: in order, or the front of two measures.

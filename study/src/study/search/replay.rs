@@ -62,11 +62,8 @@ impl<'a> Replay<'a> {
         for point in points.iter().filter(is_searched) {
             let values: Vec<Value> =
                 point.job.parameters.iter().map(|(_, value)| value.clone()).collect();
-            let level = match values.get(search.column) {
-                Some(Value::Number(number)) => *number,
-                Some(Value::Integer(number)) => *number as f64,
-                _ => continue,
-            };
+            let level = values.get(search.column).and_then(Value::any_number);
+            let Some(level) = level else { continue };
             let others = values.iter().enumerate().filter(|(column, _)| other(*column));
             let key: Vec<String> = others.map(|(_, value)| value.to_string()).collect();
             let position = *self.positions.entry(key).or_insert(self.searches.len());
