@@ -1,8 +1,10 @@
 //! The search of an optimum: against a closed form, deterministic, resumed, extended, with two measures, and its bad input.
 
+use std::fs;
+
 use serde_json::{Value, json};
 
-use crate::support::{TestFolder, json_of, paper_design};
+use crate::support::{TestFolder, json_of, paper_design, stderr};
 
 /// A piston that a tank of gas fills within a second: its pressure at the end falls with the flow, its speed rises.
 fn study(budget: usize) -> Value {
@@ -74,6 +76,28 @@ fn threads_a_stop_and_a_larger_budget_change_no_point() {
     let other = TestFolder::new(&study(12));
     other.stdout(&[&RUN[..], &["--set", "optimise.seed=2"]].concat());
     assert_ne!(bits(&other.rows("results/grid")), all[..12]);
+}
+
+#[test]
+fn a_point_of_a_search_runs_with_other_settings_and_a_key_that_is_set_is_not_searched() {
+    let folder = TestFolder::new(&study(12));
+    folder.stdout(&RUN);
+    let last = folder.rows("results/grid")[11].clone();
+    let job = last["job"].as_str().unwrap();
+    let again =
+        ["run", "results/grid", "--again", job, "--set", "gas.heat_transfer=adiabatic", "-q"];
+    let text = folder.stdout(&again);
+    assert!(text.contains(&job[..8]), "{text}");
+    let rows = folder.rows("results/grid-again");
+    assert_eq!(rows.len(), 1, "{rows:?}");
+    assert!(rows[0]["final_pressure"].as_f64() > last["final_pressure"].as_f64(), "{rows:?}");
+    // One key is left to search; with both set the study is one point.
+    let fixed = ["plan", "grid.json", "--set", "mass_flow_rate=5 g/s"];
+    let said = stderr(&folder.run(&fixed));
+    assert!(said.contains("replaces gas.mass_flow_rate in optimise.over"), "{said}");
+    assert!(said.contains("first generation 8 points"), "{said}");
+    let said = stderr(&folder.run(&[&fixed[..], &["--set", "film.temperature=300 K"]].concat()));
+    assert!(said.contains("grid: 1 point: 1 job"), "{said}");
 }
 
 #[test]
@@ -185,4 +209,18 @@ fn the_best_point_is_one_that_keeps_its_limits_on_the_finest_mesh() {
     assert!(refuted.iter().all(|one| value(one) < value(best)), "{found}");
     let text = folder.stdout(&["run", "grid.json", "--no-report"]);
     assert!(text.contains("better, but not on the finest mesh"), "{text}");
+    // Four points, then those that the model of storeys points at.
+    let plan = stderr(&folder.run(&["plan", "grid.json"]));
+    assert!(plan.contains("the model of storeys, less than a second a run"), "{plan}");
+    // What was proposed is a memo: without it, or with a damaged one, the same points are found.
+    let memo = folder.results().join("proposed.json");
+    let all = bits(&folder.rows("results/grid"));
+    let kept = fs::read(&memo).unwrap();
+    fs::write(&memo, &kept[..kept.len() / 2]).unwrap();
+    assert_eq!(bits(&folder.rows("results/grid")), all);
+    fs::remove_file(&memo).unwrap();
+    assert_eq!(bits(&folder.rows("results/grid")), all);
+    folder.stdout(&RUN);
+    assert_eq!(fs::read(&memo).unwrap(), kept);
+    assert!(folder.stdout(&["doctor", "grid.json"]).contains("no faults"));
 }

@@ -1,6 +1,6 @@
-"""SALib and Optuna on the closed forms of billow's tests, at equal budgets.
+"""SALib, Optuna and egobox on the closed forms of billow's tests, at equal budgets.
 
-    pip install SALib optuna torch numpy scipy
+    pip install SALib optuna torch egobox numpy scipy
     python tests/readers/closed_forms.py
 
 Not a part of any check: it gives the figures of others in docs/experiments.md. The functions are those of
@@ -9,6 +9,7 @@ study/src/surrogate/tests.rs and study/src/study/optimise/tests.rs.
 
 import warnings
 
+import egobox
 import numpy as np
 import optuna
 from SALib.analyze import sobol as analyze
@@ -85,7 +86,21 @@ def indices():
 def searches():
     optuna.logging.set_verbosity(optuna.logging.ERROR)
     cases = [("branin", branin, 2, 0.397887), ("toy", toy, 2, 0.599788), ("hartmann", hartmann, 3, -3.86278)]
+    report = "{}, {}: mean {:.5f}, worst {:.5f} above the smallest value".format
     for name, function, inputs, smallest in cases:
+        away = []
+        for seed in range(1, 6):
+            limits = len(function([0.5] * inputs)[1])
+            settings = {"cstr_specs": [egobox.CstrSpec.leq(0, tol=0)] * limits} if limits else {}
+            search = egobox.Egor([[0, 1]] * inputs, n_doe=8, seed=seed, **settings)
+
+            def rows(points, function=function):
+                return np.array([[value, *limits] for value, limits in map(function, points)])
+
+            found = search.minimize(rows, max_iters=32).result.y_doe
+            assert len(found) == 40
+            away.append(min(row[0] for row in found if all(row[1:] <= 0)) - smallest)
+        print(report(name, "egobox", np.mean(away), max(away)))
         for kind in (optuna.samplers.TPESampler, optuna.samplers.GPSampler):
             away = []
             for seed in range(1, 6):
@@ -100,7 +115,7 @@ def searches():
                 study.optimize(objective, n_trials=40)
                 kept = [t.value for t in study.trials if all(limit <= 0 for limit in t.user_attrs["limits"])]
                 away.append(min(kept) - smallest if kept else np.inf)
-            print(f"{name}, {kind.__name__}: mean {np.mean(away):.5f}, worst {max(away):.5f} above the smallest value")
+            print(report(name, kind.__name__, np.mean(away), max(away)))
 
 
 if __name__ == "__main__":

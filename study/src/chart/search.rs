@@ -43,18 +43,18 @@ pub fn svg(source: &Source<'_>) -> Result<String> {
         }
         Some([first, units[1].shown(tried.measures[1]?)])
     };
-    let mut tried = Line::new(Series::nth(0));
+    let (mut tried, mut best) = (Line::new(Series::nth(0)), Line::new(Series::nth(1)));
     for (k, one) in found.tried.iter().enumerate() {
         let fill = if one.keeps_limits { Fill::Filled } else { Fill::Open };
-        tried.marks.extend(point((k, one)).map(|place| (place, fill)));
+        let line = if one.is_best { &mut best } else { &mut tried };
+        line.marks.extend(point((k, one)).map(|place| (place, fill)));
     }
-    let mut best = Line::new(Series::nth(1));
     best.pieces.push(if two { front(found, &units) } else { course(found, &units[0]) });
     let y = usize::from(two);
     let panel = Panel {
         label: names[y].label(&units[y]),
         range: range(y),
-        lines: vec![best, tried],
+        lines: vec![tried, best],
         ..Panel::default()
     };
     let (label, across) = if two {
@@ -62,7 +62,7 @@ pub fn svg(source: &Source<'_>) -> Result<String> {
     } else {
         ("Points in the order of the search".to_owned(), [0.0, found.points[1] as f64 + 1.0])
     };
-    let line = if two { "the front" } else { "the smallest so far" };
+    let line = if two { "the front" } else { "the smallest so far, and the best point" };
     let entries = vec![
         (Sample::Marker(Fill::Filled), "keeps every limit, as far as is known".to_owned()),
         (Sample::Marker(Fill::Open), "does not".to_owned()),

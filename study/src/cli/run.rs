@@ -143,7 +143,11 @@ pub(super) fn run_study(
         &Run {
             name: &study.name,
             study: study.file(),
-            planner: &|finished| plan::next_jobs(&study, finished),
+            planner: &|finished| {
+                let next = plan::next_jobs(&study, finished);
+                results.keep_proposed();
+                next
+            },
             judging: study.judging(),
             table: &|points, records| Table::of_study(&study, points, records),
             label: &|parameters| study.label(parameters, &units),

@@ -1,7 +1,7 @@
 //! `--set key=value`: overrides, written into the tree of the file before it is read.
 //!
 //! - `film.thickness=…`, or a last part that only one key has, as `thickness=…`, sets that key. In a
-//!   study whose grid varies the key it replaces the axis: the study then has this value alone.
+//!   study that varies the key, in its grid, samples or search, it replaces that: the study then has this value alone.
 //! - `grid.N=[5, 6]` sets the axis of a key; `grid.N=6` is an axis of one value.
 //! - `grid.N.to=8` sets one member of an axis that is a range or a search.
 //! - `replicates.seed=3` sets the replicates of a key.
@@ -19,6 +19,8 @@ use crate::platform::quote;
 const GRID: &str = "grid";
 /// The section of the replicates.
 const REPLICATES: &str = "replicates";
+/// Sections with an object that varies keys.
+const VARYING: [[&str; 2]; 2] = [["samples", "of"], ["optimise", "over"]];
 /// Members of a grid that are not the axis of a key.
 const GRID_WORDS: [&str; 3] = ["zip", "points", "filter"];
 
@@ -126,8 +128,10 @@ fn set_key(
         error.allowed = known.join(", ");
         return Err(error);
     }
-    if key.is_some() && has_grid && removes_axis(tree, path) {
-        notes.push(format!("{}: this value replaces the axis of {path} in the grid", flag(set)));
+    if key.is_some() && has_grid {
+        let removed = removes_axis(tree, path).then(|| format!("the axis of {path} in the grid"));
+        let removed = removed.into_iter().chain(removes_varied(tree, path));
+        notes.extend(removed.map(|what| format!("{}: this value replaces {what}", flag(set))));
     }
     let mut target = &mut *tree;
     for part in path.split('.') {
@@ -154,6 +158,24 @@ fn removes_axis(tree: &mut Json, path: &str) -> bool {
     let before = members.len();
     members.retain(|(name, _)| GRID_WORDS.contains(&name.as_str()) || !same_key(name, path));
     members.len() < before
+}
+
+/// Removes a key from what is sampled or searched, and a section that then varies nothing; returns what was removed.
+fn removes_varied(tree: &mut Json, path: &str) -> Option<String> {
+    let Json::Object(sections) = tree else { return None };
+    let mut removed = None;
+    sections.retain_mut(|(name, section)| {
+        let of = VARYING.iter().find(|[known, _]| name == known);
+        let Some([_, of]) = of else { return true };
+        let Some(Json::Object(members)) = section.get_mut(of) else { return true };
+        let before = members.len();
+        members.retain(|(key, _)| !same_key(key, path));
+        if members.len() < before {
+            removed = Some(format!("{path} in {name}.{of}"));
+        }
+        before == 0 || !members.is_empty()
+    });
+    removed
 }
 
 /// The value of a member of a section. One value of an axis is a list of one.

@@ -189,7 +189,7 @@ fn without_error(study: &Study) -> Option<String> {
     if meshes.of_pilots {
         let meshes = meshes_text(&meshes.list);
         return Some(format!(
-            "{known}; pilots give one: in the end {} run on n {meshes}",
+            "{known}; pilots give one in the end: n {meshes} of {}",
             study.pilots_are()
         ));
     }
@@ -197,7 +197,13 @@ fn without_error(study: &Study) -> Option<String> {
         [] => "",
         _ => "; no limit is met for certain there",
     };
-    Some(format!("{known}{limits}; {} gives one", three_meshes(study.has_mesh())))
+    let mut points = study.points().iter();
+    let remedy = if points.all(|point| point.job.scene.solver.model == ModelKind::Film) {
+        three_meshes(study.has_mesh())
+    } else {
+        "\"solver\": {\"model\": \"film\"}"
+    };
+    Some(format!("{known}{limits}; {remedy} gives one"))
 }
 
 /// Limits on measures of which no error is known, whatever the scene.

@@ -2,6 +2,7 @@
 
 use super::finished::{FinishedRow, Judging};
 use super::grid::Axis;
+use super::optimise::PRIOR_POINTS;
 use super::search::Criterion;
 use super::{Study, pilots};
 use crate::job::JobId;
@@ -18,6 +19,13 @@ impl Study {
     pub fn searched(&self) -> Option<(&str, Criterion)> {
         let search = self.grid.search.as_ref()?;
         Some((&self.grid.columns[search.column].name, search.criterion))
+    }
+
+    /// The parameters whose values its searches choose, of borders or of an optimum.
+    pub fn names_searched(&self) -> Vec<&str> {
+        let border = self.grid.search.iter().map(|search| search.column);
+        let optimum = self.grid.optimise.iter().flat_map(|optimise| &optimise.columns).copied();
+        border.chain(optimum).map(|column| self.grid.columns[column].name.as_str()).collect()
     }
 
     /// Largest number of values that one of its searches can take; `None` without a search.
@@ -37,6 +45,12 @@ impl Study {
     /// Number of points of the search of an optimum in all, and of a generation after the first; `None` without one.
     pub fn budget(&self) -> Option<[usize; 2]> {
         self.grid.optimise.as_ref().map(|optimise| [optimise.budget, optimise.batch])
+    }
+
+    /// Number of points of the model of storeys that its search looks at, beside those that run; 0 where it has no such prior.
+    pub fn points_of_prior(&self) -> usize {
+        let has_prior = self.grid.optimise.as_ref().is_some_and(|optimise| optimise.has_prior);
+        if has_prior { PRIOR_POINTS } else { 0 }
     }
 
     /// What its results are judged by.

@@ -61,7 +61,7 @@ use crate::scene::file::flow_table;
 use grid::{Context, Grid};
 pub(crate) use meshes::features;
 pub use meshes::{Meshes, meshes_text};
-pub use optimise::{Optimum, Trial};
+pub use optimise::{Optimum, Proposed, Trial};
 pub use parameters::{StudyKey, Zipped};
 pub use search::{Border, Criterion, Level, SearchResult};
 

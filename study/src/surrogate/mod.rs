@@ -112,26 +112,23 @@ impl Surrogate {
     /// How well it foresees points that it does not know: the part of the variance of its values that it foresees where each
     /// is left out in turn; 1 for all, 0 or less for none.
     pub fn foresees(&self) -> f64 {
+        let n = self.values.len() as f64;
+        let mean = self.values.iter().sum::<f64>() / n;
+        // That of the mean of the others.
+        let others = n / (n - 1.0);
+        let square = |value: &f64| (value - mean) * others * ((value - mean) * others);
+        1.0 - self.error_left_out() * n / self.values.iter().map(square).sum::<f64>()
+    }
+
+    /// Mean square of the errors where each of its values is left out in turn.
+    pub fn error_left_out(&self) -> f64 {
         let System { k, weights, ones, .. } = &self.system;
         let inverse = k.inverse();
-        let n = self.values.len() as f64;
         let square = |i: usize| {
             let error = weights[i] / (inverse[(i, i)] - ones[i] * ones[i] / ones.sum());
             error * error
         };
-        let squares: f64 = (0..self.values.len()).map(square).sum();
-        let mean = self.values.iter().sum::<f64>() / n;
-        // That of the mean of the others.
-        let others = n / (n - 1.0);
-        let all: f64 = self
-            .values
-            .iter()
-            .map(|value| {
-                let error = (value - mean) * others;
-                error * error
-            })
-            .sum();
-        1.0 - squares / all
+        (0..self.values.len()).map(square).sum::<f64>() / self.values.len() as f64
     }
 }
 

@@ -89,6 +89,25 @@ pub struct Small {
     pub uncertainty: Option<[f64; 2]>,
 }
 
+impl Small {
+    /// The value that the point stands for, SI.
+    pub fn stands(&self) -> f64 {
+        self.stands_for.map_or(self.value, |[median, ..]| median)
+    }
+
+    /// Whether its uncertainty, and that of chance, separates it from the same measure of another point; `false` where it
+    /// is not known.
+    pub fn is_separate_from(&self, other: &Self) -> bool {
+        let interval = |one: &Self| {
+            let [_, least, largest] = one.stands_for.unwrap_or([one.value; 3]);
+            let [below, above] = one.uncertainty?;
+            Some([least - below, largest + above])
+        };
+        let intervals = interval(self).zip(interval(other));
+        intervals.is_some_and(|([a, b], [c, d])| b < c || d < a)
+    }
+}
+
 impl Optimum {
     /// What the search of a study found; `None` for a study without one. `table` is its table.
     pub fn of(stored: &Stored<'_>, table: &Table) -> Option<Self> {

@@ -37,8 +37,19 @@ pub(super) fn notes(study: &Study, counts: &PlanCounts) -> Vec<String> {
     let search = search(study, counts).or_else(|| optimise(study, counts));
     let mut notes: Vec<String> = search.into_iter().collect();
     notes.extend(limits(study));
+    notes.extend(prior(study));
     notes.extend(pilots(study));
     notes
+}
+
+/// What the search learns from a cheap model before film runs.
+fn prior(study: &Study) -> Option<String> {
+    let points = study.points_of_prior();
+    let text = format!(
+        "prior: the model of storeys, less than a second a run, shows the search where to look: at {points} points, and at \
+         each point that film runs at"
+    );
+    (points > 0).then_some(text)
 }
 
 /// What the pilots of a study cost at most, and how it does without.

@@ -96,30 +96,24 @@ fn run_changed(
     jobs: &BTreeSet<JobId>,
     out: &mut dyn Write,
 ) -> Result<()> {
-    let mut sets = args.set.set.clone();
-    let searched = stored.study.searched().map(|(name, _)| name.to_owned());
+    let searched = stored.study.names_searched();
     let mut changed = Vec::new();
     for id in jobs {
         let Some(point) = stored.point(id) else { continue };
-        // A searched value, or the mesh of a pilot, is in no plan from the start.
-        sets.truncate(args.set.set.len());
-        let value = searched.as_ref().and_then(|name| parameter(point, name));
-        if let (Some(name), Some(value)) = (&searched, value) {
-            sets.push(format!("{name}={value}"));
-        }
+        // Searched values, or the mesh of a pilot, are in no plan from the start.
+        let values = searched.iter().filter_map(|name| Some((name, parameter(point, name)?)));
+        let mut sets: Vec<String> = values.map(|(name, value)| format!("{name}={value}")).collect();
         if stored.study.is_pilot(point) {
             sets.push(format!("solver.meshes=[{}]", point.job.scene.design.subdivisions()));
         }
+        sets.extend(args.set.set.iter().cloned());
         let study = Study::load(&stored.results.study_path(), &sets)?;
         let planned = plan::next_jobs(&study, &[]).map(|generation| generation.points);
         let planned = planned.unwrap_or_default();
         let found = planned.iter().find(|other| is_same_point(other, point));
         let found = found.filter(|other| other.infeasible.is_none()).ok_or_else(|| {
             let problem = format!("leaves the study without the point of job {}", id.short());
-            let next = match stored.study.budget() {
-                Some(_) => "a study of this point without optimise: billow job names its values",
-                None => "change a key that the grid does not vary",
-            };
+            let next = "change a key that the grid does not vary";
             Error::invalid_option("--set", &args.set.set.join(" "), problem, "", next)
         })?;
         let root = beside(stored.results.root());

@@ -34,12 +34,12 @@ const MAIN_MEASURES: [ColumnId; 8] = [
 /// An unknown column, or one of single runs.
 pub fn chosen<'a>(
     listed: &'a Table,
-    runs: &Table,
+    (runs, minimised): (&Table, &[ColumnId]),
     (args, format): (&Args, Format),
     rows: &[usize],
 ) -> Result<Vec<&'a Column>> {
     let names = match args.columns.as_slice() {
-        [] if format == Format::Table => return Ok(main_columns(listed, &args.sort)),
+        [] if format == Format::Table => return Ok(main_columns(listed, minimised, &args.sort)),
         names if !names.is_empty() && names != ["all"] => names.iter().map(|name| name.trim()),
         _ if format == Format::Table => return Ok(all(listed)),
         _ => return Ok(in_order(listed)),
@@ -90,9 +90,9 @@ fn is_of_points(table: &Table) -> bool {
     table.columns.first().is_some_and(|column| column.name == RUNS)
 }
 
-/// Parameters, the columns that sort the rows, how the runs ended, what the limits say, then the measures that fit on a
-/// line.
-fn main_columns<'a>(table: &'a Table, sort: &[String]) -> Vec<&'a Column> {
+/// Parameters, the columns that sort the rows, how the runs ended, what a search makes small, what the limits say, then the
+/// measures that fit on a line.
+fn main_columns<'a>(table: &'a Table, minimised: &[ColumnId], sort: &[String]) -> Vec<&'a Column> {
     let of_points = is_of_points(table);
     let mut columns: Vec<&Column> = table.columns.iter().take(usize::from(!of_points)).collect();
     columns.extend(table.parameters());
@@ -123,7 +123,8 @@ fn main_columns<'a>(table: &'a Table, sort: &[String]) -> Vec<&'a Column> {
         let of_run = [ColumnId::Status.name(), ColumnId::Verdict.name()];
         names.retain(|(name, _)| !of_run.contains(name));
     }
-    names.extend(limits.map(|name| (name, true)));
+    let minimised = minimised.iter().map(|id| id.name());
+    names.extend(minimised.chain(limits).map(|name| (name, true)));
     let measures = MAIN_MEASURES.iter().filter(|id| has_strategies || **id != ColumnId::PeakVz);
     names.extend(
         measures.map(|id| (table.of_any_film(*id).name(), has_strategies && loads.contains(id))),

@@ -105,7 +105,8 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         None => sorted(&table, rows.clone(), &args.sort)?,
     };
     let printed = &order[..args.limit.unwrap_or(order.len()).min(order.len())];
-    let columns = columns::chosen(listed, &table, (args, format), printed)?;
+    let columns =
+        columns::chosen(listed, (&table, stored.study.minimised()), (args, format), printed)?;
     print_table(listed, &columns, printed, format, out)?;
     if args.quiet.quiet {
         return Ok(());

@@ -4,7 +4,7 @@ use super::comparisons::{listed, value};
 use super::optimum::of_point;
 use super::parameters_text;
 use super::tolerances::probability;
-use crate::analysis::answer::{Answer, SafeCounts, Tolerance};
+use crate::analysis::answer::{Answer, Best, SafeCounts, Tolerance};
 use crate::analysis::ranking::{Basis, Ranking};
 use crate::job::row::CellType;
 use crate::print::count;
@@ -14,9 +14,9 @@ const MAX_POINTS: usize = 4;
 
 /// The line; `None` for a study without limits, and for one that searches a border: its borders say it.
 pub(super) fn headline(answer: &Answer) -> Option<String> {
-    match answer.optimum.as_ref().map(|found| (found.minimise.len(), found.best.first())) {
-        Some((1, Some(best))) => return Some(of_point(best)),
-        Some((_, Some(_))) => return None,
+    match answer.optimum.as_ref().map(|found| found.best.as_slice()) {
+        Some([best]) => return Some(of_point(best)),
+        Some([first, .., last]) => return Some(of_front(first, last)),
         _ => {}
     }
     let safety = answer.safety.as_ref().filter(|_| answer.searches.is_none())?;
@@ -79,6 +79,18 @@ fn of_samples(points: &[Tolerance]) -> String {
         texts.push(format!("and {} more", count(order.len() - MAX_POINTS, "point")));
     }
     texts.join("; ")
+}
+
+/// `the smallest peak_vz 16.7 m/s with t_deployed 0.79 s; the smallest t_deployed 0.204 s with peak_vz 19.9 m/s`.
+fn of_front(first: &Best, last: &Best) -> String {
+    let of = |point: &Best, least: usize, other: usize| {
+        let [least, other] = [least, other].map(|k| {
+            let one = &point.measures[k];
+            format!("{} {}", one.measure, one.shown.brief(one.stands()))
+        });
+        format!("{least} with {other}")
+    };
+    format!("the smallest {}; the smallest {}", of(first, 0, 1), of(last, 1, 0))
 }
 
 fn of_points(counts: &SafeCounts) -> String {

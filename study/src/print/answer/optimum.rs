@@ -23,7 +23,9 @@ pub(super) fn lines(found: &Optimum) -> Vec<String> {
         let some = if shown < all { format!(", {shown} of them") } else { String::new() };
         lines.push(format!("the front between {names} has {}{some}:", count(all, "point")));
         let place = |k: usize| if shown > 1 { k * (all - 1) / (shown - 1) } else { 0 };
-        lines.extend((0..shown).map(|k| of_point(&found.best[place(k)])));
+        let shown: Vec<&Best> = (0..shown).map(|k| &found.best[place(k)]).collect();
+        lines.extend(shown.iter().map(|point| of_point(point)));
+        lines.extend(not_separate(&shown));
     }
     for point in &found.refuted {
         lines.push(format!("better, but not on the finest mesh: {}", of_point(point)));
@@ -86,6 +88,20 @@ pub(super) fn of_point(best: &Best) -> String {
     let first = if best.runs > 1 { ", the first is" } else { "," };
     let _ = write!(text, "; {}{first} job {job}", count(best.runs, "run"));
     text
+}
+
+/// Neighbours of a front that their uncertainty does not separate: the one costs nothing that is known.
+fn not_separate(points: &[&Best]) -> Option<String> {
+    let measures = points.first()?.measures.len();
+    let pairs = points.windows(2).flat_map(|pair| (0..measures).map(move |k| (pair, k)));
+    let texts = pairs.filter_map(|(pair, k)| {
+        let [one, other] = [pair[0], pair[1]].map(|point| &point.measures[k]);
+        let [a, b] = [one, other].map(|small| brief_number(small.shown.number(small.stands())));
+        let text = || format!("{} {a} and {b} {}", one.measure, one.shown.symbol());
+        (!one.is_separate_from(other)).then(text)
+    });
+    let texts: Vec<String> = texts.map(|text| text.trim_end().to_owned()).collect();
+    (!texts.is_empty()).then(|| format!("the uncertainty does not separate {}", texts.join(", ")))
 }
 
 fn small(one: &Small) -> String {

@@ -64,7 +64,8 @@ fn of_point(point: &Tolerance) -> Vec<String> {
     [vec![text], measures].concat()
 }
 
-/// "safe with a probability of 75 to 92 % (55 of 64 samples safe, 6 unsafe, 3 within their uncertainty)".
+/// "safe with a probability of 75 to 92 % (55 of 64 samples safe, 6 unsafe, 3 within their uncertainty; the values of 57 keep
+/// the limits)".
 pub(super) fn probability(point: &Tolerance) -> String {
     let [low, high] = point.safe_between.map(|end| 100.0 * end);
     let Proportion { met, of } = point.safe;
@@ -83,6 +84,9 @@ pub(super) fn probability(point: &Tolerance) -> String {
         if number > 0 {
             let _ = write!(text, ", {number} {what}");
         }
+    }
+    if within > 0 {
+        let _ = write!(text, "; the values of {} keep the limits", point.kept);
     }
     text.push(')');
     text

@@ -7,6 +7,7 @@
 //!                 checkpoints/*.json states of jobs that have not ended (crate::store::checkpoint_file)
 //!                 summary.parquet   the table, built from plan and journal (crate::store::table)
 //!                 charts/           pictures (crate::chart)
+//!                 proposed.json     what a search proposed ([`proposals`])
 //!                 attempts.jsonl    during a run: which jobs it has started (crate::store::attempts)
 //!                 submission/       what was given to a scheduler (`crate::cluster`)
 //!                 parts/            results of the tasks of a scheduler, folders of results
@@ -30,17 +31,20 @@ use crate::store::table::{Table, parquet};
 
 mod histories;
 mod lock;
+mod proposals;
 mod set_aside;
 mod study_json;
 
 /// Name of the file of a run's attempts.
 const ATTEMPTS: &str = "attempts.jsonl";
+/// Name of the file of what a search proposed.
+const PROPOSED: &str = "proposed.json";
 /// Name of the folder of what was given to a scheduler.
 pub const SUBMISSION: &str = "submission";
 /// Name of the folder with the results of the tasks of a scheduler.
 pub const PARTS: &str = "parts";
 /// Names that a run writes into a results folder.
-pub const RESULT_NAMES: [&str; 13] = [
+pub const RESULT_NAMES: [&str; 14] = [
     "study.json",
     "previous.json",
     "journal",
@@ -49,6 +53,7 @@ pub const RESULT_NAMES: [&str; 13] = [
     "summary.parquet",
     "charts",
     REPORT,
+    PROPOSED,
     ATTEMPTS,
     SUBMISSION,
     PARTS,
@@ -197,11 +202,12 @@ impl<'a> Results<'a> {
         Ok(removed)
     }
 
-    /// Reads the journals.
+    /// Reads the journals, and what a search has proposed: with both the points of a study are known.
     ///
     /// # Errors
     /// [`Error::Disk`] as [`journal::read`].
     pub fn journal(&self) -> Result<Journal> {
+        self.recall_proposed();
         journal::read(self.files, &self.journal_path())
     }
 

@@ -8,18 +8,12 @@
 //! ```
 //! A run that failed, or has no fold pattern, keeps no limit, and counts as the worst of the others.
 
-use std::collections::BTreeMap;
-use std::collections::hash_map::DefaultHasher;
-use std::hash::{Hash, Hasher};
-use std::sync::{Mutex, PoisonError};
-
 use billow_solver::platform::random::{hash, unit};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
-use super::expected::Surrogates;
+use super::expected::{Expected, Surrogates};
 use super::{Optimise, Trial, sobol};
 use crate::input::value::Value;
-use crate::job::JobId;
 use crate::surrogate::{Coordinate, Surrogate, normal};
 
 /// Points at which a(x) is computed: of the Sobol' sequence, and near the best points.
@@ -39,46 +33,21 @@ const MIN_DISTANCE_FROM_REFUSED: f64 = 0.05;
 /// Proposals that are refused before a batch ends. Chosen: more are a range of which most is not allowed.
 const MAX_REFUSED: usize = 64;
 
-/// What was proposed before for the same trials: a plan asks for each generation again whenever it is replayed.
-static PROPOSED: Mutex<BTreeMap<u64, Vec<Vec<Value>>>> = Mutex::new(BTreeMap::new());
-
-/// The next points of a generation with this number: at most a batch, fewer where no others are found. `is_new` says
-/// whether the study allows values, and runs other jobs with them.
-pub(super) fn proposed(
-    optimise: &Optimise,
-    trials: &[Trial],
-    (batch, generation): (usize, u32),
-    is_new: &dyn Fn(&[Value]) -> bool,
-) -> Vec<Vec<Value>> {
-    let mut key = DefaultHasher::new();
-    (format!("{optimise:?}"), batch, generation).hash(&mut key);
-    for trial in trials {
-        // A job id stands for all other settings of the study.
-        let ids: Vec<&str> = trial.jobs.iter().map(JobId::as_str).collect();
-        let place = trial.place.iter().map(|place| place.to_bits());
-        let known = trial.measures.iter().chain(&trial.margins);
-        let known = known.map(|number| number.map(f64::to_bits));
-        (ids, place.collect::<Vec<_>>(), known.collect::<Vec<_>>()).hash(&mut key);
-        trial.keeps_limits.hash(&mut key);
-    }
-    let key = key.finish();
-    let known = || PROPOSED.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(proposed) = known().get(&key) {
-        return proposed.clone();
-    }
-    let chosen = Search { optimise, trials, generation }.batch(batch, is_new);
-    known().insert(key, chosen.clone());
-    chosen
-}
-
-struct Search<'a> {
-    optimise: &'a Optimise,
-    trials: &'a [Trial],
-    generation: u32,
+/// A search that chooses its next points.
+pub(super) struct Search<'a> {
+    pub optimise: &'a Optimise,
+    /// Its points so far.
+    pub trials: &'a [Trial],
+    /// Points of a cheap model; none without one.
+    pub prior: &'a [Trial],
+    /// Number of the generation that it chooses.
+    pub generation: u32,
 }
 
 impl Search<'_> {
-    fn batch(&self, batch: usize, is_new: &dyn Fn(&[Value]) -> bool) -> Vec<Vec<Value>> {
+    /// At most a batch of points, fewer where no others are found. `is_new` says whether the study allows values, and runs
+    /// other jobs with them.
+    pub fn batch(&self, batch: usize, is_new: &dyn Fn(&[Value]) -> bool) -> Vec<Vec<Value>> {
         let margins = self.margins();
         let two = self.optimise.minimise.len() > 1;
         let mut surrogates = self.surrogates(&margins, 0);
@@ -111,29 +80,41 @@ impl Search<'_> {
     }
 
     /// The surrogate of the margin of each limit that some points keep and others do not, or that differs.
-    fn margins(&self) -> Vec<Surrogate> {
+    fn margins(&self) -> Vec<Expected> {
         let limits = self.trials.first().map_or(0, |trial| trial.margins.len());
-        let points: Vec<Vec<f64>> = self.trials.iter().map(|trial| trial.place.clone()).collect();
+        let margin = |trial: &Trial, limit: usize| trial.margins[limit].unwrap_or(FAILED_MARGIN);
         let of = |limit: usize| {
-            let values: Vec<f64> = self
-                .trials
-                .iter()
-                .map(|trial| trial.margins[limit].unwrap_or(FAILED_MARGIN))
-                .collect();
-            Surrogate::fit(&points, &values, &self.words())
+            let values = |of: &[Trial]| -> Vec<f64> {
+                of.iter().map(|trial| margin(trial, limit)).collect()
+            };
+            self.expected(&values(self.trials), &values(self.prior))
         };
-        let all: Vec<Option<Surrogate>> = (0..limits).into_par_iter().map(of).collect();
+        let all: Vec<Option<Expected>> = (0..limits).into_par_iter().map(of).collect();
         all.into_iter().flatten().collect()
     }
 
+    /// What is expected of a number with these values at the points, and those of the cheap model.
+    fn expected(&self, values: &[f64], cheap: &[f64]) -> Option<Expected> {
+        let places = |of: &[Trial]| -> Vec<Vec<f64>> {
+            of.iter().map(|trial| trial.place.clone()).collect()
+        };
+        let words = self.words();
+        let cheap = Surrogate::fit(&places(self.prior), cheap, &words);
+        Expected::fit(&places(self.trials), values, &words, cheap.as_ref())
+    }
+
     /// The surrogates for a point of the batch.
-    fn surrogates(&self, margins: &[Surrogate], number: usize) -> Surrogates {
-        let values = self.scalar(number);
-        let worst = values.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
-        let points: Vec<Vec<f64>> = self.trials.iter().map(|trial| trial.place.clone()).collect();
-        let known: Vec<f64> = values.iter().map(|value| value.unwrap_or(worst)).collect();
-        let measure =
-            if worst.is_finite() { Surrogate::fit(&points, &known, &self.words()) } else { None };
+    fn surrogates(&self, margins: &[Expected], number: usize) -> Surrogates {
+        let worst = |values: &[Option<f64>]| {
+            values.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max)
+        };
+        // Points without a value count as the worst; the worst of none is infinite.
+        let known = |of: &[Trial]| -> Vec<f64> {
+            let values = self.scalar(of, number);
+            values.iter().map(|value| value.unwrap_or(worst(&values))).collect()
+        };
+        let (values, cheap) = (known(self.trials), known(self.prior));
+        let measure = self.expected(&values, &cheap);
         let mut found = Surrogates { measure, margins: margins.to_vec(), best: None };
         let kept = self.trials.iter().filter(|trial| trial.keeps_limits);
         let means = kept.filter_map(|trial| Some(found.measure.as_ref()?.at(&trial.place).0));
@@ -141,11 +122,11 @@ impl Search<'_> {
         found
     }
 
-    /// What becomes small, as one number for each trial.
-    fn scalar(&self, number: usize) -> Vec<Option<f64>> {
+    /// What becomes small, as one number for each of these points.
+    fn scalar(&self, trials: &[Trial], number: usize) -> Vec<Option<f64>> {
         let of = |trial: &Trial, k: usize| trial.measures[k].filter(|_| trial.is_measured());
         if self.optimise.minimise.len() == 1 {
-            return self.trials.iter().map(|trial| of(trial, 0)).collect();
+            return trials.iter().map(|trial| of(trial, 0)).collect();
         }
         // Both ends, then halves: 0, 1, ½, ¼, ¾, …
         let generation = self.generation.saturating_sub(1) as usize;
@@ -157,7 +138,7 @@ impl Search<'_> {
         };
         let weights = [first, 1.0 - first];
         let scaled = |k: usize| {
-            let values = || self.trials.iter().filter_map(|trial| of(trial, k));
+            let values = || trials.iter().filter_map(|trial| of(trial, k));
             let low = values().fold(f64::INFINITY, f64::min);
             let high = values().fold(f64::NEG_INFINITY, f64::max);
             move |value: f64| if high > low { (value - low) / (high - low) } else { 0.0 }
@@ -168,7 +149,7 @@ impl Search<'_> {
             let [a, b] = [parts[0]?, parts[1]?];
             Some(a.max(b) + SUM_WEIGHT * (a + b))
         };
-        self.trials.iter().map(scalar).collect()
+        trials.iter().map(scalar).collect()
     }
 
     /// The point where the surrogates expect most, different from all before, and not near a refused place.

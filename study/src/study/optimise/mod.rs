@@ -1,7 +1,8 @@
 //! The section `optimise` of a study: a search of the point with the smallest measure that keeps the limits.
 //!
 //! ```text
-//! first generation:  points of the Sobol' sequence, 2 (inputs + 1), at least 8
+//! first generation:  points of the Sobol' sequence: 2 (inputs + 1), at least 8; of film, of which the model of storeys
+//!                    says something before it runs (prior.rs), inputs + 1, at least 4
 //! next generation:   a batch of points, each the one where a surrogate expects most (acquisition.rs), until the budget is
 //!                    used up
 //! then:              the best point on two finer meshes; where it does not keep the limits there, the next best
@@ -10,18 +11,24 @@
 
 mod acquisition;
 mod expected;
+mod prior;
+mod proposed;
 mod read;
 mod replay;
+mod trial;
 
 use crate::input::value::Value;
 use crate::job::row::ColumnId;
 use crate::surrogate::Coordinate;
 
+pub(in crate::study) use prior::POINTS as PRIOR_POINTS;
+pub use proposed::Proposed;
 pub(crate) use replay::Replay;
-pub use replay::{Optimum, Trial};
+pub use trial::{Optimum, Trial};
 
-/// Points of the first generation at least.
+/// Points of the first generation at least, without a prior and with one.
 const MIN_FIRST: usize = 8;
+const MIN_FIRST_WITH_PRIOR: usize = 4;
 
 /// A search of an optimum.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,12 +45,20 @@ pub(super) struct Optimise {
     pub batch: usize,
     /// Another seed gives other points.
     pub seed: u32,
+    /// Whether a cheap model says something of its points before they run.
+    pub has_prior: bool,
 }
 
 impl Optimise {
     /// Number of points of the first generation.
     pub fn first(&self) -> usize {
-        (2 * (self.columns.len() + 1)).max(MIN_FIRST).min(self.budget)
+        let inputs = self.columns.len();
+        let first = if self.has_prior {
+            (inputs + 1).max(MIN_FIRST_WITH_PRIOR)
+        } else {
+            (2 * (inputs + 1)).max(MIN_FIRST)
+        };
+        first.min(self.budget)
     }
 
     /// The values of a point of the unit cube.

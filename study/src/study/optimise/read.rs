@@ -59,7 +59,10 @@ impl Grid {
         let number = |name: &str| Ok(object.count(name)? as usize);
         let (budget, batch) = (number("budget")?, number("batch")?);
         let seed = object.count("seed")?;
-        let optimise = Optimise { minimise, columns, coordinates, budget, batch, seed };
+        // Film from a mesh has no storeys.
+        let is_film = context.settings.text("solver.model") == Some("film");
+        let has_prior = is_film && context.settings.meshes.is_empty();
+        let optimise = Optimise { minimise, columns, coordinates, budget, batch, seed, has_prior };
         let rows = optimise.first_values();
         self.axes.push(Axis { columns: optimise.columns.clone(), rows, kind: AxisKind::Optimise });
         self.optimise = Some(optimise);

@@ -1,9 +1,9 @@
 //! The search of an optimum, replayed from its finished jobs: generation after generation, as they were planned.
 
-use std::cmp::Ordering;
 use std::collections::{HashMap, HashSet};
 
-use super::{Optimise, acquisition};
+use super::trial::best;
+use super::{Optimise, Optimum, Trial, prior, proposed, sobol};
 use crate::input::value::Value;
 use crate::job::JobId;
 use crate::job::point::{Point, Searched};
@@ -39,51 +39,6 @@ struct Tried {
     runs: Vec<JobId>,
 }
 
-/// A point of the search, with what is known of it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Trial {
-    /// The values of what the search varies.
-    pub values: Vec<Value>,
-    /// Its place in the ranges: from 0 to 1, or the position of a word.
-    pub(super) place: Vec<f64>,
-    /// Its generation; 0 for the first.
-    pub generation: u32,
-    /// Its jobs.
-    pub jobs: Vec<JobId>,
-    /// Median of the runs of each measure that becomes small; `None` where a run has none.
-    pub measures: Vec<Option<f64>>,
-    /// For each limit the margin of the run that is nearest to it or farthest beyond, its known uncertainty taken off, between
-    /// −1 and 1; `None` where a run cannot be judged.
-    pub margins: Vec<Option<f64>>,
-    /// Whether every run has a result, and keeps every limit as far as is known.
-    pub keeps_limits: bool,
-    /// What it varies that is at an end of its range, and whether that is the upper one.
-    pub at_end: Vec<(String, bool)>,
-    /// Whether all of its runs have ended.
-    pub ended: bool,
-}
-
-impl Trial {
-    /// Whether each run has a value of what becomes small.
-    pub fn is_measured(&self) -> bool {
-        self.measures.iter().all(Option::is_some)
-    }
-}
-
-/// What a search has found.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Optimum {
-    /// Its points, in plan order.
-    pub trials: Vec<Trial>,
-    /// Of the points that keep the limits the positions of the best, the best first; of two measures those of the front,
-    /// by the first measure.
-    pub best: Vec<usize>,
-    /// Number of points in all.
-    pub budget: usize,
-    /// Whether no other point is to be tried: the budget is used up, or all others are refused or are jobs that it knows.
-    pub ended: bool,
-}
-
 impl<'a> Replay<'a> {
     /// The search at its start. `None` for a study without one.
     pub fn new(study: &'a Study, finished: &'a [FinishedRow]) -> Option<Self> {
@@ -98,10 +53,10 @@ impl<'a> Replay<'a> {
 
     /// Adds the points of a generation. One whose jobs are all those of others does not count.
     pub fn add(&mut self, points: &[Point]) {
-        let columns = &self.optimise.columns;
+        let optimise = self.optimise;
         let varied = |point: &Point| -> Vec<Value> {
             let values = values_of(point);
-            columns.iter().map(|column| values[*column].clone()).collect()
+            optimise.columns.iter().map(|column| values[*column].clone()).collect()
         };
         // Runs of one point stand together.
         for runs in points.chunk_by(|a, b| varied(a) == varied(b)) {
@@ -134,24 +89,67 @@ impl<'a> Replay<'a> {
             self.points_of(chosen).iter().any(|point| !self.known.contains(&point.job.id))
         };
         let (optimise, generation) = (self.optimise, (batch, self.generations));
-        let proposed = acquisition::proposed(optimise, &self.trials(), generation, &is_new);
+        let trials = self.trials();
+        let prior = || self.prior();
+        let proposed = proposed::next(optimise, (&trials, &prior), generation, &is_new);
         proposed.iter().flat_map(|chosen| self.points_of(chosen)).collect()
     }
 
     /// The runs of a point with these values of what is varied; none where the study refuses them.
     fn points_of(&self, chosen: &[Value]) -> Vec<Point> {
+        self.study.points_at(&self.with(chosen), Searched::No)
+    }
+
+    /// Value of each column of the grid with these values of what is varied.
+    fn with(&self, chosen: &[Value]) -> Vec<Value> {
         let mut values = self.first.clone();
         for (column, value) in self.optimise.columns.iter().zip(chosen) {
             values[*column] = value.clone();
         }
-        self.study.points_at(&values, Searched::No)
+        values
+    }
+
+    /// The values of what is varied among those of all columns.
+    fn varied(&self, values: &[Value]) -> Vec<Value> {
+        self.optimise.columns.iter().map(|column| values[*column].clone()).collect()
+    }
+
+    /// Points of the cheap model, with what is known of them: spread evenly, and those of the search.
+    fn prior(&self) -> Vec<Trial> {
+        let optimise = self.optimise;
+        if !optimise.has_prior {
+            return Vec::new();
+        }
+        let spread = sobol(optimise.columns.len(), optimise.seed).take(prior::POINTS);
+        let tried = self.tried.iter().map(|tried| self.varied(&tried.values));
+        let mut chosen: Vec<Vec<Value>> = Vec::new();
+        for values in spread.map(|point| optimise.values(&point)).chain(tried) {
+            if !chosen.contains(&values) {
+                chosen.push(values);
+            }
+        }
+        let mut jobs = Vec::new();
+        let mut tried = Vec::new();
+        for chosen in chosen {
+            let of_point = prior::jobs(&self.points_of(&chosen));
+            let runs = of_point.iter().map(|job| job.id.clone()).collect();
+            jobs.extend(of_point);
+            let (values, place) = (self.with(&chosen), optimise.place(&chosen));
+            tried.push(Tried { values, place, generation: 0, runs });
+        }
+        let rows = prior::rows(&jobs, self.study.judging());
+        self.trials_of(&tried, &rows.iter().map(|row| (&row.id, row)).collect())
     }
 
     /// What is known of each point.
     fn trials(&self) -> Vec<Trial> {
+        self.trials_of(&self.tried, &self.finished)
+    }
+
+    fn trials_of(&self, tried: &[Tried], finished: &HashMap<&JobId, &FinishedRow>) -> Vec<Trial> {
         let trial = |tried: &Tried| {
             let rows: Vec<Option<&FinishedRow>> =
-                tried.runs.iter().map(|id| self.finished.get(id).copied()).collect();
+                tried.runs.iter().map(|id| finished.get(id).copied()).collect();
             let ended = rows.iter().all(Option::is_some);
             let known: Vec<&FinishedRow> = rows.into_iter().flatten().collect();
             let measure = |k: usize| {
@@ -172,7 +170,7 @@ impl<'a> Replay<'a> {
                 |row: &&FinishedRow| row.limits.iter().all(|one| one.as_ref().is_some_and(safe));
             let keeps_limits = measures.iter().all(Option::is_some) && known.iter().all(keeps);
             Trial {
-                values: self.optimise.columns.iter().map(|c| tried.values[*c].clone()).collect(),
+                values: self.varied(&tried.values),
                 place: tried.place.clone(),
                 generation: tried.generation,
                 jobs: tried.runs.clone(),
@@ -183,7 +181,7 @@ impl<'a> Replay<'a> {
                 ended,
             }
         };
-        self.tried.iter().map(trial).collect()
+        tried.iter().map(trial).collect()
     }
 
     /// The names of what a place has at an end of its range.
@@ -238,32 +236,4 @@ fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let n = values.len();
     0.5 * (values[(n - 1) / 2] + values[n / 2])
-}
-
-/// The order of two measures, those that are not known last.
-fn by_measure(a: Option<f64>, b: Option<f64>) -> Ordering {
-    a.unwrap_or(f64::INFINITY).total_cmp(&b.unwrap_or(f64::INFINITY))
-}
-
-/// The best of the points that keep the limits: in order, or the front of two measures.
-fn best(trials: &[Trial]) -> Vec<usize> {
-    let mut kept: Vec<usize> = (0..trials.len()).filter(|k| trials[*k].keeps_limits).collect();
-    let measures = |k: &usize| &trials[*k].measures;
-    if kept.first().is_none_or(|first| measures(first).len() == 1) {
-        kept.sort_by(|a, b| by_measure(measures(a)[0], measures(b)[0]));
-        return kept;
-    }
-    let dominates = |a: &usize, b: &usize| {
-        let pairs = || measures(a).iter().zip(measures(b));
-        pairs().all(|(a, b)| by_measure(*a, *b).is_le())
-            // Of equal points the first stands for all.
-            && (a < b || pairs().any(|(a, b)| by_measure(*a, *b).is_lt()))
-    };
-    let mut front: Vec<usize> = kept
-        .iter()
-        .copied()
-        .filter(|k| !kept.iter().any(|other| other != k && dominates(other, k)))
-        .collect();
-    front.sort_by(|a, b| by_measure(measures(a)[0], measures(b)[0]));
-    front
 }

@@ -15,12 +15,13 @@ fn optimise(inputs: usize, measures: usize, budget: usize, seed: u32) -> Optimis
         budget,
         batch: 4,
         seed,
+        has_prior: false,
     }
 }
 
-/// The search of a function, with all of its budget.
-fn search(optimise: &Optimise, of: Function) -> Vec<Trial> {
-    let trial = |values: Vec<Value>, generation: u32| {
+/// The search of a function, with all of its budget; `cheap` stands for it before it is known.
+fn search(optimise: &Optimise, of: Function, cheap: Option<Function>) -> Vec<Trial> {
+    let trial = |of: Function, values: Vec<Value>, generation: u32| {
         let place = optimise.place(&values);
         let (measures, margins) = of(&place);
         let keeps_limits = margins.iter().all(|margin| *margin > 0.0);
@@ -37,13 +38,21 @@ fn search(optimise: &Optimise, of: Function) -> Vec<Trial> {
         }
     };
     let mut trials: Vec<Trial> =
-        optimise.first_values().into_iter().map(|values| trial(values, 0)).collect();
+        optimise.first_values().into_iter().map(|values| trial(of, values, 0)).collect();
+    let prior = |trials: &[Trial]| -> Vec<Trial> {
+        let Some(cheap) = cheap else { return Vec::new() };
+        let spread = sobol(optimise.columns.len(), optimise.seed).take(prior::POINTS);
+        let spread = spread.map(|point| optimise.values(&point));
+        let tried = trials.iter().map(|known| known.values.clone());
+        spread.chain(tried).map(|values| trial(cheap, values, 0)).collect()
+    };
     let mut generation = 1;
     while trials.len() < optimise.budget {
         let batch = optimise.batch.min(optimise.budget - trials.len());
-        let proposed = acquisition::proposed(optimise, &trials, (batch, generation), &|_| true);
+        let known = (trials.as_slice(), &(|| prior(&trials)) as &dyn Fn() -> Vec<Trial>);
+        let proposed = proposed::next(optimise, known, (batch, generation), &|_| true);
         assert!(!proposed.is_empty());
-        trials.extend(proposed.into_iter().map(|values| trial(values, generation)));
+        trials.extend(proposed.into_iter().map(|values| trial(of, values, generation)));
         generation += 1;
     }
     trials
@@ -95,10 +104,38 @@ fn the_smallest_value_of_closed_forms_is_found() {
     ] {
         let mut worst = 0.0_f64;
         for seed in 1..=5 {
-            let trials = search(&optimise(inputs, 1, budget, seed), of);
+            let trials = search(&optimise(inputs, 1, budget, seed), of, None);
             let away = smallest(&trials) - smallest_value;
             worst = worst.max(away);
         }
         assert!(worst < near, "{name}: {worst}");
     }
+}
+
+/// Branin with other constants, a slope and another scale.
+fn cheap_branin(x: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let moved = [(0.95 * x[0] + 0.03).min(1.0), (0.95 * x[1] + 0.02).min(1.0)];
+    (vec![0.4 * branin(&moved).0[0] + 8.0 * x[0] - 5.0], vec![])
+}
+
+/// Falls where Branin rises.
+fn misleading(x: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    (vec![-branin(x).0[0] + 100.0 * libm::sin(9.0 * x[0])], vec![])
+}
+
+#[test]
+fn a_cheap_model_saves_points_and_a_misleading_one_costs_few() {
+    let after = |budget: usize, cheap: Option<Function>| -> f64 {
+        let away = |seed: u32| {
+            let mut optimise = optimise(2, 1, budget, seed);
+            optimise.has_prior = cheap.is_some();
+            smallest(&search(&optimise, branin, cheap)) - 0.397_887
+        };
+        // The geometric mean of five seeds.
+        libm::exp((1..=5).map(|seed| libm::log(away(seed).max(1e-9))).sum::<f64>() / 5.0)
+    };
+    let (alone, cheap) = (after(16, None), after(16, Some(cheap_branin)));
+    assert!(cheap < 0.2 * alone, "{cheap} with the cheap model, {alone} without");
+    let misled = after(40, Some(misleading));
+    assert!(misled < 0.05, "{misled}");
 }

@@ -62,6 +62,8 @@ pub struct Tolerance {
     pub safe_between: [f64; 2],
     /// Number of runs that are unsafe; the others are within their uncertainty, or have no result.
     pub not_safe: usize,
+    /// Number of runs whose values keep every limit, whatever their uncertainty.
+    pub kept: usize,
     /// The run with the smallest margin: its job, the margin, the measure.
     pub nearest: Option<(String, f64, String)>,
     /// The measures that have a limit, or the main ones.
@@ -128,6 +130,10 @@ impl Tolerance {
         let count = |wanted| ended.iter().filter(|row| table.safety(**row) == Some(wanted)).count();
         let [safe, uncertain, not_safe] = Safety::ALL.map(count);
         let of = if limits.is_empty() { 0 } else { ended.len() };
+        let kept = |row: &&usize| {
+            let met = |limit| table.judge(limit, **row).is_some_and(|judged| judged.met);
+            limits.iter().all(met)
+        };
         let samples = of_samples(inputs.0, &ended).len();
         let met = |met: usize| Proportion { met, of };
         let done = |row: &usize| table.status(*row) == Some(Status::Done);
@@ -152,6 +158,7 @@ impl Tolerance {
             safe: met(safe),
             safe_between: [met(safe).wilson_of(samples)[0], possible[1]],
             not_safe,
+            kept: ended.iter().filter(kept).count(),
             nearest: nearest.and_then(|(margin, name, row)| Some((job(row)?, margin, name))),
             measures: measures.iter().filter_map(spread).collect(),
         }
