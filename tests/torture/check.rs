@@ -108,7 +108,7 @@ impl Truth {
 
 /// The rows of the table, without costs.
 pub fn rows(place: &Place) -> Result<Vec<Value>, Finish> {
-    let finish = place.run("table results/s --json");
+    let finish = place.run("table results/s --runs --json");
     match serde_json::from_str::<Vec<Value>>(&finish.stdout) {
         Ok(rows) if finish.succeeded() => Ok(rows.into_iter().map(without_costs).collect()),
         _ => Err(finish),

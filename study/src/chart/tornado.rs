@@ -3,11 +3,12 @@
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 
 use super::names::{self, Name};
 use super::outcome::{self, Outcomes};
 use super::parameters::{self, Parameter};
-use super::{Source, invalid_option, over};
+use super::{Source, importance, invalid_option, over};
 use crate::analysis::compare::{self, canonical};
 use crate::input::value::short_number;
 use crate::platform::error::Result;
@@ -74,8 +75,18 @@ pub fn svg(source: &Source<'_>, measure: &str) -> Result<String> {
     let column = source.measure("--measure", measure)?;
     let one = OneFactor::of(source, 2).ok_or_else(|| {
         let problem = "needs a parameter to be drawn over";
-        let allowed = "--over PARAMETER, --map X,Y, or points that vary one factor at a time";
-        invalid_option("--measure", measure, problem, allowed, "")
+        let mut allowed =
+            "--over PARAMETER, --map X,Y, or points that vary one factor at a time".to_owned();
+        let alone = source.answer.map(importance::measures).unwrap_or_default();
+        if !alone.is_empty() {
+            let _ = write!(
+                allowed,
+                "; alone {}, of which the answer says what makes the spread",
+                alone.join(", ")
+            );
+        }
+        let hint = if alone.is_empty() { "" } else { "a limit on a measure adds it to them" };
+        invalid_option("--measure", measure, problem, allowed, hint)
     })?;
     let value = |row: usize| outcome::value(source, column, row);
     let mut notes = source.runs_notes(Some(column));
