@@ -115,3 +115,24 @@ fn more_samples_keep_the_finished_ones_and_threads_change_no_bit() {
     let infeasible = rows.iter().filter(|row| row["status"] == "infeasible");
     assert_eq!((rows.len(), infeasible.count()), (16, 8));
 }
+
+#[test]
+fn what_is_assumed_has_a_distribution() {
+    let jobs = |of: &Value| -> Vec<Value> {
+        let mut study = study(8);
+        study["samples"]["of"] = json!({
+            "mass_flow_rate": {"uniform": ["4 g/s", "6 g/s"]},
+            "gas.heat_transfer": of["heat"], "film.loss_factor": of["loss"], "contact.friction": of["friction"],
+        });
+        study["solver"] = json!({"end_time": "1 ms"});
+        let folder = TestFolder::new(&study);
+        folder.stdout(&["run", "grid.json", "-q", "--no-report"]);
+        folder.rows("results/grid").iter().map(|row| row["job"].clone()).collect()
+    };
+    let assumed = json!({"assumed": true});
+    let given = json!({
+        "heat": {"log_uniform": [0.1, 1]}, "loss": {"log_uniform": [0.003, 0.03]}, "friction": {"uniform": [0, 0.48]},
+    });
+    let all = jobs(&json!({"heat": assumed, "loss": assumed, "friction": assumed}));
+    assert_eq!((jobs(&given), all.len()), (all, 16));
+}

@@ -68,9 +68,9 @@ impl ThreadsOption {
 /// Overrides of the study or scene file.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct SetOption {
-    /// Override a key of the study or scene file, for example --set film.thickness="30 um"; a value or a
-    /// list for a key of the grid, as in --set N=6 or --set 'N=[5, 6]', replaces its axis; can be
-    /// repeated.
+    /// Override a key of the study or scene file, for example --set film.thickness="30 um"; a value for a
+    /// key that the study varies, as in --set N=6, replaces its axis, samples or range; a list, as in
+    /// --set 'N=[5, 6]', is another axis or range; can be repeated.
     #[arg(long, value_name = "KEY=VALUE", help_heading = HEADING)]
     pub set: Vec<String>,
 }

@@ -129,6 +129,7 @@ pub(super) fn run_study(
         unit.or(column.map(|column| column.unit)).map(str::to_owned)
     })?;
     let instruction_set = super::instruction_set::selected()?;
+    let pool = options.threads.pool()?;
     let (threads, note) = memory::threads(options.threads.count()?);
     let memory = Memory::new(threads);
     memory.check()?;
@@ -144,8 +145,10 @@ pub(super) fn run_study(
             name: &study.name,
             study: study.file(),
             planner: &|finished| {
-                let next = plan::next_jobs(&study, finished);
-                results.keep_proposed();
+                let next = pool.install(|| plan::next_jobs(&study, finished));
+                if !study.minimised().is_empty() {
+                    results.keep_proposed();
+                }
                 next
             },
             judging: study.judging(),

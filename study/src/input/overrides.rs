@@ -4,8 +4,10 @@
 //!   study that varies the key, in its grid, samples or search, it replaces that: the study then has this value alone.
 //! - `grid.N=[5, 6]` sets the axis of a key; `grid.N=6` is an axis of one value.
 //! - `grid.N.to=8` sets one member of an axis that is a range or a search.
-//! - `replicates.seed=3` sets the replicates of a key.
-//! - A list for a key that takes one value is an axis in a study: `N=[5, 6]` is `grid.N=[5, 6]`.
+//! - `replicates.seed=3` sets the replicates of a key, `samples.of.N=…` its distribution, `optimise.over.N=[5, 8]` its range
+//!   in a search.
+//! - A list for a key that takes one value is its range where a search varies it, and else an axis in a study: `N=[5, 6]` is
+//!   `grid.N=[5, 6]`.
 
 use crate::input::json::Json;
 use crate::input::keys::{self, KeyKind, Table};
@@ -17,10 +19,10 @@ use crate::platform::quote;
 
 /// The section of the axes.
 const GRID: &str = "grid";
-/// The section of the replicates.
+/// The other sections with a member for each key that they vary.
 const REPLICATES: &str = "replicates";
-/// Sections with an object that varies keys.
-const VARYING: [[&str; 2]; 2] = [["samples", "of"], ["optimise", "over"]];
+const SAMPLES: &str = "samples.of";
+const OPTIMISE: &str = "optimise.over";
 /// Members of a grid that are not the axis of a key.
 const GRID_WORDS: [&str; 3] = ["zip", "points", "filter"];
 
@@ -60,7 +62,7 @@ fn apply_one(
         return Err(refused(set, "a scene has no grid")
             .with_hint("set the key itself, or use a study file with billow plan"));
     }
-    for section in [GRID, REPLICATES].into_iter().filter(|_| has_grid) {
+    for section in [GRID, REPLICATES, SAMPLES, OPTIMISE].into_iter().filter(|_| has_grid) {
         if let Some(axis) = name.strip_prefix(section).and_then(|rest| rest.strip_prefix('.')) {
             return Ok(set_axis(tree, section, axis, value));
         }
@@ -113,7 +115,9 @@ fn set_key(
     let key = table.find(name).map(|index| table.keys[index]);
     let one_value = key.is_some_and(|key| key.varies() && !matches!(key.kind, KeyKind::Vector(_)));
     if one_value && has_grid && matches!(value, Json::List(_)) {
-        return Ok(set_axis(tree, GRID, name, value));
+        let is_searched = varied(tree, OPTIMISE)
+            .is_some_and(|members| members.iter().any(|(other, _)| same_key(name, other)));
+        return Ok(set_axis(tree, if is_searched { OPTIMISE } else { GRID }, name, value));
     }
     let path = key.map_or(name, |key| key.path);
     let first = path.split(['.', '[']).next().unwrap_or_default();
@@ -128,9 +132,11 @@ fn set_key(
         error.allowed = known.join(", ");
         return Err(error);
     }
-    if key.is_some() && has_grid {
+    if has_grid {
         let removed = removes_axis(tree, path).then(|| format!("the axis of {path} in the grid"));
-        let removed = removed.into_iter().chain(removes_varied(tree, path));
+        let varied =
+            [SAMPLES, OPTIMISE].into_iter().filter_map(|of| removes_varied(tree, path, of));
+        let removed = removed.into_iter().chain(varied);
         notes.extend(removed.map(|what| format!("{}: this value replaces {what}", flag(set))));
     }
     let mut target = &mut *tree;
@@ -160,22 +166,34 @@ fn removes_axis(tree: &mut Json, path: &str) -> bool {
     members.len() < before
 }
 
-/// Removes a key from what is sampled or searched, and a section that then varies nothing; returns what was removed.
-fn removes_varied(tree: &mut Json, path: &str) -> Option<String> {
-    let Json::Object(sections) = tree else { return None };
-    let mut removed = None;
-    sections.retain_mut(|(name, section)| {
-        let of = VARYING.iter().find(|[known, _]| name == known);
-        let Some([_, of]) = of else { return true };
-        let Some(Json::Object(members)) = section.get_mut(of) else { return true };
-        let before = members.len();
-        members.retain(|(key, _)| !same_key(key, path));
-        if members.len() < before {
-            removed = Some(format!("{path} in {name}.{of}"));
-        }
-        before == 0 || !members.is_empty()
-    });
-    removed
+/// The members of a section that varies keys, as `samples.of`.
+fn varied<'a>(tree: &'a mut Json, section: &str) -> Option<&'a mut Vec<(String, Json)>> {
+    let mut target = tree;
+    for part in section.split('.') {
+        target = target.get_mut(part)?;
+    }
+    match target {
+        Json::Object(members) => Some(members),
+        _ => None,
+    }
+}
+
+/// Removes a key from a section that varies it, and the section that then varies nothing; returns what was removed.
+fn removes_varied(tree: &mut Json, path: &str, section: &str) -> Option<String> {
+    let members = varied(tree, section)?;
+    let before = members.len();
+    members.retain(|(key, _)| !same_key(key, path));
+    let (left, removed) = (members.len(), before - members.len());
+    if left == 0
+        && removed > 0
+        && let (Json::Object(sections), Some((name, _))) = (tree, section.split_once('.'))
+    {
+        sections.retain(|(known, _)| known != name);
+    }
+    // Inputs are numbered in their order.
+    let others =
+        if section == SAMPLES && left > 0 { "; other inputs may get other samples" } else { "" };
+    (removed > 0).then(|| format!("{path} in {section}{others}"))
 }
 
 /// The value of a member of a section. One value of an axis is a list of one.
@@ -192,7 +210,9 @@ fn as_axis(section: &str, axis: &str, given: Json) -> Json {
 
 /// Sets an axis; it replaces an axis of the same key. `N.to` is one member of a range or a search.
 fn set_axis(tree: &mut Json, section: &str, axis: &str, given: Json) -> String {
-    if let Some(Json::Object(members)) = member(tree, section) {
+    let mut parts = section.split('.');
+    let section_of = parts.try_fold(tree, |target, part| member(target, part));
+    if let Some(Json::Object(members)) = section_of {
         if let Some((key, part)) = axis.rsplit_once('.')
             && let Some((name, parts @ Json::Object(_))) =
                 members.iter_mut().find(|(name, _)| same_key(name, key))

@@ -191,7 +191,7 @@ fn samples() -> Json {
     let numbers = json!({"type": "array", "items": number, "minItems": 2, "maxItems": 3});
     let kinds = ["uniform", "log_uniform", "normal", "log_normal", "triangular"];
     let mut distribution = json!({"type": "object", "properties": {
-        "from": number, "to": number, "values": {"type": "array", "minItems": 2},
+        "from": number, "to": number, "values": {"type": "array", "minItems": 2}, "assumed": {"const": true},
         "weights": {"type": "array", "items": {"type": "number", "exclusiveMinimum": 0}},
     }, "additionalProperties": false});
     for kind in kinds {

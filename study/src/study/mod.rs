@@ -188,7 +188,10 @@ impl Study {
         let units = units::read(&tree, &settings, &source)?;
         // A key that is sampled is not assumed.
         assumed.leave_out(|key| grid.columns_sampled().any(|column| column.key.path == key));
-        let (mut points, filtered) = expand::points(&settings, &grid, &source, max_points)?;
+        let (mut points, mut filtered) = expand::points(&settings, &grid, &source, max_points)?;
+        if grid.with_prior(&points) {
+            (points, filtered) = expand::points(&settings, &grid, &source, max_points)?;
+        }
         grid.refuse_without_fold(&points, &source)?;
         meshes::refuse_other_models(&grid, &points, &source)?;
         notes.extend(parameters::alike(&points));

@@ -95,16 +95,16 @@ impl Small {
         self.stands_for.map_or(self.value, |[median, ..]| median)
     }
 
-    /// Whether its uncertainty, and that of chance, separates it from the same measure of another point; `false` where it
-    /// is not known.
-    pub fn is_separate_from(&self, other: &Self) -> bool {
+    /// Whether its uncertainty, and that of chance, separates it from the same measure of another point; `None` where it is
+    /// not known.
+    pub fn is_separate_from(&self, other: &Self) -> Option<bool> {
         let interval = |one: &Self| {
             let [_, least, largest] = one.stands_for.unwrap_or([one.value; 3]);
             let [below, above] = one.uncertainty?;
             Some([least - below, largest + above])
         };
-        let intervals = interval(self).zip(interval(other));
-        intervals.is_some_and(|([a, b], [c, d])| b < c || d < a)
+        let ([a, b], [c, d]) = (interval(self)?, interval(other)?);
+        Some(b < c || d < a)
     }
 }
 
@@ -232,4 +232,30 @@ impl Best {
 )]
 fn safety<S: Serializer>(safety: &Option<Safety>, to: S) -> Result<S::Ok, S::Error> {
     safety.map(Safety::name).serialize(to)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_points_are_separate_where_their_intervals_do_not_meet() {
+        let small = |[median, least, largest]: [f64; 3], uncertainty| Small {
+            measure: "peak_vz".to_owned(),
+            shown: DisplayUnit::si("m/s"),
+            value: median,
+            stands_for: Some([median, least, largest]),
+            uncertainty,
+        };
+        let low = small([10.0, 9.0, 11.0], Some([1.0, 2.0]));
+        for (other, separate) in [
+            (small([20.0, 19.0, 21.0], Some([5.0, 1.0])), Some(true)),
+            (small([20.0, 19.0, 21.0], Some([7.0, 1.0])), Some(false)),
+            (small([20.0, 12.5, 21.0], Some([0.0, 0.0])), Some(false)),
+            (small([20.0, 19.0, 21.0], None), None),
+        ] {
+            assert_eq!(low.is_separate_from(&other), separate, "{other:?}");
+            assert_eq!(other.is_separate_from(&low), separate, "{other:?}");
+        }
+    }
 }

@@ -30,6 +30,11 @@ pub(super) fn lines(found: &Optimum) -> Vec<String> {
     for point in &found.refuted {
         lines.push(format!("better, but not on the finest mesh: {}", of_point(point)));
     }
+    if let ([_, ..], [best]) = (found.refuted.as_slice(), found.best.as_slice())
+        && best.confirmed_on.is_none()
+    {
+        lines.push("the best point did not run on a finer mesh: search on one".to_owned());
+    }
     if found.best.is_empty() {
         let limits = if found.tried.iter().any(|one| one.measures.iter().all(Option::is_some)) {
             "keeps every limit"
@@ -98,7 +103,7 @@ fn not_separate(points: &[&Best]) -> Option<String> {
         let [one, other] = [pair[0], pair[1]].map(|point| &point.measures[k]);
         let [a, b] = [one, other].map(|small| brief_number(small.shown.number(small.stands())));
         let text = || format!("{} {a} and {b} {}", one.measure, one.shown.symbol());
-        (!one.is_separate_from(other)).then(text)
+        (one.is_separate_from(other) == Some(false)).then(text)
     });
     let texts: Vec<String> = texts.map(|text| text.trim_end().to_owned()).collect();
     (!texts.is_empty()).then(|| format!("the uncertainty does not separate {}", texts.join(", ")))

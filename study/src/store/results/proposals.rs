@@ -1,7 +1,7 @@
 //! What the search of an optimum has proposed, so that a command that reads its results need not search again.
 //!
 //! ```text
-//! results/<study>/proposed.json   {"checksum": "…", "commit": "…", "proposed": {"<hash of the points before>": [[…], …]}}
+//! results/<study>/proposed.json   {"checksum": "…", "program": "…", "proposed": {"<hash of the points before>": [[…], …]}}
 //! ```
 //! Nothing depends on it: where it is missing, damaged or of another program, the same points are found again, in seconds.
 
@@ -12,13 +12,18 @@ use serde::{Deserialize, Serialize};
 
 use super::Results;
 use crate::platform::files::write_if_changed;
-use crate::platform::provenance::COMMIT;
+use crate::platform::provenance::{COMMIT, PROGRAM_VERSION};
 use crate::study::Proposed;
 
 #[derive(Serialize, Deserialize)]
 struct Search {
-    commit: String,
+    program: String,
     proposed: Proposed,
+}
+
+/// The program that proposes: another one may propose other points.
+fn program() -> String {
+    format!("{PROGRAM_VERSION} {COMMIT}")
 }
 
 impl Results<'_> {
@@ -31,7 +36,7 @@ impl Results<'_> {
         let Ok(bytes) = self.files.read(&self.proposed_path()) else { return };
         let text = String::from_utf8(bytes).ok().and_then(|text| seal::open(&text).ok());
         let search: Option<Search> = text.and_then(|text| serde_json::from_str(&text).ok());
-        if let Some(search) = search.filter(|search| search.commit == COMMIT) {
+        if let Some(search) = search.filter(|search| search.program == program()) {
             Proposed::recall(search.proposed);
         }
     }
@@ -42,7 +47,7 @@ impl Results<'_> {
         if proposed.is_empty() {
             return;
         }
-        let search = Search { commit: COMMIT.to_owned(), proposed };
+        let search = Search { program: program(), proposed };
         if let Ok(text) = serde_json::to_string(&search) {
             let _ =
                 write_if_changed(self.files, &self.proposed_path(), seal::seal(&text).as_bytes());

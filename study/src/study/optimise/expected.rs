@@ -48,7 +48,11 @@ impl Expected {
 
     /// The same, which takes its mean at a point as known there.
     pub fn believing(&self, point: &[f64]) -> Option<Self> {
-        Some(Self { cheap: self.cheap.clone(), rest: self.rest.believing(point)? })
+        let cheap = match &self.cheap {
+            Some((cheap, slope)) => Some((cheap.believing(point)?, *slope)),
+            None => None,
+        };
+        Some(Self { cheap, rest: self.rest.believing(point)? })
     }
 }
 

@@ -40,29 +40,40 @@ impl Proposed {
     }
 }
 
+/// What is known when points are proposed.
+pub(super) struct Known<'a> {
+    /// The points of the search.
+    pub trials: &'a [Trial],
+    /// What else the proposals depend on: limits, and the jobs of the cheap model.
+    pub beside: &'a str,
+    /// Runs the cheap model.
+    pub prior: &'a dyn Fn() -> Vec<Trial>,
+}
+
 /// The next points of a generation with this number: a batch of [`Search`].
 pub(super) fn next(
     optimise: &Optimise,
-    (trials, prior): (&[Trial], &dyn Fn() -> Vec<Trial>),
+    known: &Known<'_>,
     (batch, generation): (usize, u32),
     is_new: &dyn Fn(&[Value]) -> bool,
 ) -> Vec<Vec<Value>> {
     let mut key = DefaultHasher::new();
-    (format!("{optimise:?}"), batch, generation).hash(&mut key);
-    for trial in trials {
-        // A job id stands for all other settings of the study.
+    // A larger budget goes on with the same points.
+    let search = Optimise { budget: 0, ..optimise.clone() };
+    (format!("{search:?}"), known.beside, batch, generation).hash(&mut key);
+    for trial in known.trials {
         let ids: Vec<&str> = trial.jobs.iter().map(JobId::as_str).collect();
         let place = trial.place.iter().map(|place| place.to_bits());
-        let known = trial.measures.iter().chain(&trial.margins);
-        let known = known.map(|number| number.map(f64::to_bits));
-        (ids, place.collect::<Vec<_>>(), known.collect::<Vec<_>>()).hash(&mut key);
+        let numbers = trial.measures.iter().chain(&trial.margins);
+        let numbers = numbers.map(|number| number.map(f64::to_bits));
+        (ids, place.collect::<Vec<_>>(), numbers.collect::<Vec<_>>()).hash(&mut key);
         trial.keeps_limits.hash(&mut key);
     }
     let key = key.finish();
     if let Some(proposed) = Proposed::known().0.get(&key) {
         return proposed.clone();
     }
-    let search = Search { optimise, trials, prior: &prior(), generation };
+    let search = Search { optimise, trials: known.trials, prior: &(known.prior)(), generation };
     let chosen = search.batch(batch, is_new);
     Proposed::known().0.insert(key, chosen.clone());
     chosen

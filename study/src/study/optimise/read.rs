@@ -1,6 +1,6 @@
 //! Reads `{"minimise": …, "over": {…}, "budget": …}`.
 
-use super::Optimise;
+use super::{Optimise, prior};
 use crate::input::json::Json;
 use crate::input::keys::numerical::is_of_method;
 use crate::input::keys::{Key, KeyKind, OPTIMISE_KEYS};
@@ -59,14 +59,26 @@ impl Grid {
         let number = |name: &str| Ok(object.count(name)? as usize);
         let (budget, batch) = (number("budget")?, number("batch")?);
         let seed = object.count("seed")?;
-        // Film from a mesh has no storeys.
-        let is_film = context.settings.text("solver.model") == Some("film");
-        let has_prior = is_film && context.settings.meshes.is_empty();
+        let has_prior = false;
         let optimise = Optimise { minimise, columns, coordinates, budget, batch, seed, has_prior };
         let rows = optimise.first_values();
         self.axes.push(Axis { columns: optimise.columns.clone(), rows, kind: AxisKind::Optimise });
         self.optimise = Some(optimise);
         Ok(())
+    }
+
+    /// Lets a cheap model say something of the points of the search before they run, where it can compute these first ones;
+    /// returns whether it does: the search then begins with fewer.
+    pub(in crate::study) fn with_prior(&mut self, points: &[Point]) -> bool {
+        let Some(optimise) = self.optimise.as_mut().filter(|_| prior::is_of(points)) else {
+            return false;
+        };
+        optimise.has_prior = true;
+        let mut axes = self.axes.iter_mut();
+        if let Some(axis) = axes.find(|axis| axis.kind == AxisKind::Optimise) {
+            axis.rows = optimise.first_values();
+        }
+        true
     }
 
     /// Refuses a search of which no first point has a fold pattern: nothing says where one is.

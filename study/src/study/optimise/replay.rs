@@ -2,12 +2,13 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::proposed::{self, Known};
 use super::trial::best;
-use super::{Optimise, Optimum, Trial, prior, proposed, sobol};
+use super::{Optimise, Optimum, Trial, prior, sobol};
 use crate::input::value::Value;
-use crate::job::JobId;
 use crate::job::point::{Point, Searched};
 use crate::job::result_limit::{Judged, Safety};
+use crate::job::{Job, JobId};
 use crate::study::Study;
 use crate::study::finished::FinishedRow;
 
@@ -89,9 +90,15 @@ impl<'a> Replay<'a> {
             self.points_of(chosen).iter().any(|point| !self.known.contains(&point.job.id))
         };
         let (optimise, generation) = (self.optimise, (batch, self.generations));
-        let trials = self.trials();
-        let prior = || self.prior();
-        let proposed = proposed::next(optimise, (&trials, &prior), generation, &is_new);
+        let (trials, (prior, jobs)) = (self.trials(), self.prior());
+        let judging = self.study.judging();
+        let run = || {
+            let rows = prior::rows(&jobs, judging);
+            self.trials_of(&prior, &rows.iter().map(|row| (&row.id, row)).collect())
+        };
+        let ids: Vec<&str> = jobs.iter().map(|job| job.id.as_str()).collect();
+        let known = Known { trials: &trials, beside: &format!("{judging:?} {ids:?}"), prior: &run };
+        let proposed = proposed::next(optimise, &known, generation, &is_new);
         proposed.iter().flat_map(|chosen| self.points_of(chosen)).collect()
     }
 
@@ -114,31 +121,36 @@ impl<'a> Replay<'a> {
         self.optimise.columns.iter().map(|column| values[*column].clone()).collect()
     }
 
-    /// Points of the cheap model, with what is known of them: spread evenly, and those of the search.
-    fn prior(&self) -> Vec<Trial> {
+    /// Points of the cheap model, spread evenly and those of the search, with their jobs.
+    fn prior(&self) -> (Vec<Tried>, Vec<Job>) {
         let optimise = self.optimise;
+        let (mut all, mut jobs) = (Vec::new(), Vec::new());
         if !optimise.has_prior {
-            return Vec::new();
+            return (all, jobs);
         }
+        let grid = &self.study.grid;
+        let replicates: Vec<usize> = (0..grid.columns.len())
+            .filter(|column| grid.is_replicate(*column) && !grid.is_sampled(*column))
+            .collect();
         let spread = sobol(optimise.columns.len(), optimise.seed).take(prior::POINTS);
         let tried = self.tried.iter().map(|tried| self.varied(&tried.values));
-        let mut chosen: Vec<Vec<Value>> = Vec::new();
-        for values in spread.map(|point| optimise.values(&point)).chain(tried) {
-            if !chosen.contains(&values) {
-                chosen.push(values);
+        let mut known: Vec<Vec<Value>> = Vec::new();
+        for chosen in spread.map(|point| optimise.values(&point)).chain(tried) {
+            if known.contains(&chosen) {
+                continue;
             }
+            let runs = self.points_of(&chosen);
+            // What the study refuses is no point of the search either.
+            if !runs.is_empty() {
+                let of_point = prior::jobs(&runs, &replicates);
+                let runs = of_point.iter().map(|job| job.id.clone()).collect();
+                jobs.extend(of_point);
+                let (values, place) = (self.with(&chosen), optimise.place(&chosen));
+                all.push(Tried { values, place, generation: 0, runs });
+            }
+            known.push(chosen);
         }
-        let mut jobs = Vec::new();
-        let mut tried = Vec::new();
-        for chosen in chosen {
-            let of_point = prior::jobs(&self.points_of(&chosen));
-            let runs = of_point.iter().map(|job| job.id.clone()).collect();
-            jobs.extend(of_point);
-            let (values, place) = (self.with(&chosen), optimise.place(&chosen));
-            tried.push(Tried { values, place, generation: 0, runs });
-        }
-        let rows = prior::rows(&jobs, self.study.judging());
-        self.trials_of(&tried, &rows.iter().map(|row| (&row.id, row)).collect())
+        (all, jobs)
     }
 
     /// What is known of each point.

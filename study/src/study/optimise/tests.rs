@@ -49,8 +49,10 @@ fn search(optimise: &Optimise, of: Function, cheap: Option<Function>) -> Vec<Tri
     let mut generation = 1;
     while trials.len() < optimise.budget {
         let batch = optimise.batch.min(optimise.budget - trials.len());
-        let known = (trials.as_slice(), &(|| prior(&trials)) as &dyn Fn() -> Vec<Trial>);
-        let proposed = proposed::next(optimise, known, (batch, generation), &|_| true);
+        let beside = format!("{}", cheap.map_or(0, |cheap| cheap as usize));
+        let prior = || prior(&trials);
+        let known = proposed::Known { trials: &trials, beside: &beside, prior: &prior };
+        let proposed = proposed::next(optimise, &known, (batch, generation), &|_| true);
         assert!(!proposed.is_empty());
         trials.extend(proposed.into_iter().map(|values| trial(of, values, generation)));
         generation += 1;
@@ -136,6 +138,6 @@ fn a_cheap_model_saves_points_and_a_misleading_one_costs_few() {
     };
     let (alone, cheap) = (after(16, None), after(16, Some(cheap_branin)));
     assert!(cheap < 0.2 * alone, "{cheap} with the cheap model, {alone} without");
-    let misled = after(40, Some(misleading));
-    assert!(misled < 0.05, "{misled}");
+    let (alone, misled) = (after(40, None), after(40, Some(misleading)));
+    assert!(misled < 10.0 * alone.max(1e-4), "{misled} with a misleading model, {alone} without");
 }

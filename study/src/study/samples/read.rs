@@ -1,6 +1,7 @@
 //! Reads the distribution of an input.
 
 use super::distribution::Distribution;
+use crate::accuracy::{ASSUMED_KEYS, AssumedRanges};
 use crate::input::json::Json;
 use crate::input::keys::{Key, KeyKind};
 use crate::input::object::{list, members};
@@ -19,7 +20,10 @@ const KINDS: [&str; 5] = ["uniform", "log_uniform", "normal", "log_normal", "tri
 /// What a distribution must look like, for errors.
 const DISTRIBUTION: &str = "{\"uniform\": [low, high]}, log_uniform, {\"normal\": [mean, deviation or \"5 %\"]}, {\"log_normal\": \
                             [median, \"5 %\"]}, {\"triangular\": [low, peak, high]}, each with \"from\" and \"to\"; or \
-                            {\"values\": […], \"weights\": […]}";
+                            {\"values\": […], \"weights\": […]}, {\"assumed\": true}";
+/// Coulomb friction, which is assumed too: none to that of polyimide on polyimide (ASTM D1894, the maker's table).
+const FRICTION: &str = "contact.friction";
+const FRICTION_RANGE: [f64; 2] = [0.0, 0.48];
 
 /// Reads the distribution of a key.
 pub(super) fn distribution(
@@ -44,6 +48,9 @@ pub(super) fn distribution(
     let [(name, numbers)] = kinds.as_slice() else {
         return Err(refuse("is not one distribution"));
     };
+    if name == "assumed" {
+        return truncated(assumed(key, json, path, source)?, key, json, path, source);
+    }
     if !matches!(key.kind, KeyKind::Quantity(_)) {
         let allowed = "{\"values\": […], \"weights\": […]}";
         return Err(source.error(
@@ -115,6 +122,26 @@ pub(super) fn distribution(
         _ => {}
     }
     truncated(of, key, json, path, source)
+}
+
+/// The distribution of what is assumed, over its whole range.
+fn assumed(
+    key: &Key,
+    json: &Json,
+    path: &str,
+    source: &Source,
+) -> Result<Distribution, InputError> {
+    if json.get("assumed") != Some(&Json::Bool(true)) {
+        return Err(source.error(path, json, "is not true", "{\"assumed\": true}"));
+    }
+    if key.path == FRICTION {
+        return Ok(Distribution::Uniform(FRICTION_RANGE));
+    }
+    let position = ASSUMED_KEYS.iter().position(|known| *known == key.path).ok_or_else(|| {
+        let allowed = format!("{} or {FRICTION}", ASSUMED_KEYS.join(", "));
+        source.error(path, json, "is not among what is assumed: give its distribution", allowed)
+    })?;
+    Ok(Distribution::LogUniform(AssumedRanges::default().0[position]))
 }
 
 /// A distribution between the ends that the file gives it.
