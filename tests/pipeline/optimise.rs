@@ -112,6 +112,10 @@ fn a_point_of_a_search_runs_with_other_settings_and_a_key_that_is_set_is_not_sea
     let set = ["plan", "grid.json", "--set", "strategies.ramp.inflow[0].from=0.15 s"];
     let said = stderr(&folder.run(&set));
     assert!(said.contains("replaces strategies.ramp.inflow[0].from in optimise.over"), "{said}");
+    let list =
+        ["plan", "grid.json", "--set", "strategies.ramp.inflow[0].from=[\"0.2 s\", \"0.1 s\"]"];
+    let said = stderr(&folder.run(&list));
+    assert!(said.contains("does not begin below"), "{said}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::support::{TestFolder, json_of, paper_design};
+use crate::support::{TestFolder, json_of, paper_design, stderr};
 
 /// A piston that is full at the end: its pressure is m R T/V with m from the mass flow rate.
 fn study(number: usize) -> Value {
@@ -117,9 +117,29 @@ fn more_samples_keep_the_finished_ones_and_threads_change_no_bit() {
 }
 
 #[test]
+fn a_key_that_is_set_is_not_sampled_and_a_sample_runs_with_other_settings() {
+    let mut study = study(8);
+    study["samples"]["correlations"] = json!([["mass_flow_rate", "film.temperature", 0.5]]);
+    let folder = TestFolder::new(&study);
+    folder.stdout(&["run", "grid.json", "-q", "--no-report"]);
+    let row = folder.rows("results/grid")[3].clone();
+    let again = ["run", "results/grid", "--again", row["job"].as_str().unwrap(), "-q"];
+    folder.stdout(&[&again[..], &["--set", "mass_flow_rate=8 g/s"]].concat());
+    let rows = folder.rows("results/grid-again");
+    let ran = rows.iter().find(|row| row["status"] == "done").unwrap();
+    // Its temperature is that of the sample; the gas is at that of the film.
+    assert_eq!(ran["final_temperature"], row["temperature"]);
+    let ratio = ran["final_pressure"].as_f64().unwrap() / row["final_pressure"].as_f64().unwrap();
+    close(&json!(ratio), 0.008 / row["mass_flow_rate"].as_f64().unwrap(), 0.02);
+    let said = stderr(&folder.run(&["plan", "grid.json", "--set", "mass_flow_rate=5 g/s"]));
+    assert!(said.contains("replaces gas.mass_flow_rate in samples.of"), "{said}");
+}
+
+#[test]
 fn what_is_assumed_has_a_distribution() {
-    let jobs = |of: &Value| -> Vec<Value> {
+    let jobs = |of: &Value, ranges: &Value| -> Vec<Value> {
         let mut study = study(8);
+        study["assumed"] = ranges.clone();
         study["samples"]["of"] = json!({
             "mass_flow_rate": {"uniform": ["4 g/s", "6 g/s"]},
             "gas.heat_transfer": of["heat"], "film.loss_factor": of["loss"], "contact.friction": of["friction"],
@@ -133,6 +153,12 @@ fn what_is_assumed_has_a_distribution() {
     let given = json!({
         "heat": {"log_uniform": [0.1, 1]}, "loss": {"log_uniform": [0.003, 0.03]}, "friction": {"uniform": [0, 0.48]},
     });
-    let all = jobs(&json!({"heat": assumed, "loss": assumed, "friction": assumed}));
-    assert_eq!((jobs(&given), all.len()), (all, 16));
+    let all_assumed = json!({"heat": assumed, "loss": assumed, "friction": assumed});
+    let all = jobs(&all_assumed, &json!({}));
+    assert_eq!((jobs(&given, &json!({})), all.len()), (all, 16));
+    // The study's section says what it assumes.
+    let mut narrow = given.clone();
+    narrow["loss"] = json!({"log_uniform": [0.01, 0.02]});
+    let ranges = json!({"loss_factor": [0.01, 0.02]});
+    assert_eq!(jobs(&all_assumed, &ranges), jobs(&narrow, &json!({})));
 }

@@ -114,10 +114,21 @@ fn set_key(
 ) -> Result<String, InputError> {
     let key = table.find(name).map(|index| table.keys[index]);
     let one_value = key.is_some_and(|key| key.varies() && !matches!(key.kind, KeyKind::Vector(_)));
-    if one_value && has_grid && matches!(value, Json::List(_)) {
-        let is_searched = varied(tree, OPTIMISE)
-            .is_some_and(|members| members.iter().any(|(other, _)| same_key(name, other)));
-        return Ok(set_axis(tree, if is_searched { OPTIMISE } else { GRID }, name, value));
+    if has_grid && matches!(value, Json::List(_)) {
+        let mut is_in = |section| {
+            let members = varied(tree, section);
+            members.is_some_and(|all| all.iter().any(|(other, _)| same_key(name, other)))
+        };
+        if is_in(SAMPLES) {
+            let mut error = refused(set, "is a list, and the key is sampled");
+            error.hint =
+                format!("--set '{SAMPLES}.{name}={{\"uniform\": [low, high]}}', or one value");
+            return Err(error);
+        }
+        let section = if is_in(OPTIMISE) { OPTIMISE } else { GRID };
+        if one_value || section == OPTIMISE {
+            return Ok(set_axis(tree, section, name, value));
+        }
     }
     let path = key.map_or(name, |key| key.path);
     let first = path.split(['.', '[']).next().unwrap_or_default();
@@ -178,22 +189,30 @@ fn varied<'a>(tree: &'a mut Json, section: &str) -> Option<&'a mut Vec<(String, 
     }
 }
 
-/// Removes a key from a section that varies it, and the section that then varies nothing; returns what was removed.
+/// Removes a key from a section that varies it, with its correlations, and the section that then varies nothing; returns
+/// what was removed.
 fn removes_varied(tree: &mut Json, path: &str, section: &str) -> Option<String> {
     let members = varied(tree, section)?;
     let before = members.len();
     members.retain(|(key, _)| !same_key(key, path));
     let (left, removed) = (members.len(), before - members.len());
+    if removed == 0 {
+        return None;
+    }
+    let (name, _) = section.split_once('.')?;
+    if let Some(Json::List(pairs)) = tree.get_mut(name)?.get_mut("correlations") {
+        let of_key = |item: &Json| matches!(item, Json::Text(name) if same_key(name, path));
+        pairs.retain(|pair| !matches!(pair, Json::List(items) if items.iter().any(of_key)));
+    }
     if left == 0
-        && removed > 0
-        && let (Json::Object(sections), Some((name, _))) = (tree, section.split_once('.'))
+        && let Json::Object(sections) = tree
     {
         sections.retain(|(known, _)| known != name);
     }
     // Inputs are numbered in their order.
     let others =
         if section == SAMPLES && left > 0 { "; other inputs may get other samples" } else { "" };
-    (removed > 0).then(|| format!("{path} in {section}{others}"))
+    Some(format!("{path} in {section}{others}"))
 }
 
 /// The value of a member of a section. One value of an axis is a list of one.

@@ -21,11 +21,13 @@ impl Study {
         Some((&self.grid.columns[search.column].name, search.criterion))
     }
 
-    /// The parameters whose values its searches choose, of borders or of an optimum.
-    pub fn names_searched(&self) -> Vec<&str> {
+    /// The parameters whose values its searches choose, of borders or of an optimum, or its samples.
+    pub fn names_chosen(&self) -> Vec<&str> {
         let border = self.grid.search.iter().map(|search| search.column);
         let optimum = self.grid.optimise.iter().flat_map(|optimise| &optimise.columns).copied();
-        border.chain(optimum).map(|column| self.grid.columns[column].name.as_str()).collect()
+        let searched = border.chain(optimum).map(|column| &self.grid.columns[column]);
+        let all = searched.chain(self.grid.columns_sampled());
+        all.map(|column| column.name.as_str()).collect()
     }
 
     /// Largest number of values that one of its searches can take; `None` without a search.

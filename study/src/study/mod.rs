@@ -63,6 +63,7 @@ pub(crate) use meshes::features;
 pub use meshes::{Meshes, meshes_text};
 pub use optimise::{Optimum, Proposed, Trial};
 pub use parameters::{StudyKey, Zipped};
+pub use pilots::MAX_CONFIRMED;
 pub use search::{Border, Criterion, Level, SearchResult};
 
 /// Number of points of a grid, before its filter, at most (chosen: a quarter of a million are planned in
@@ -179,8 +180,13 @@ impl Study {
         notes.extend(mesh_film::read_first(&mut tree, &mut settings, &source)?);
         let result_limits = result_limits::read(tree.get(LIMITS), &source)?;
         let mut assumed = assumed::read(tree.get("assumed"), &source)?;
-        let context =
-            Context { settings: &settings, limits: &result_limits, source: &source, max_points };
+        let context = Context {
+            settings: &settings,
+            limits: &result_limits,
+            assumed: &assumed,
+            source: &source,
+            max_points,
+        };
         let mut grid = Grid::read(&tree, context)?;
         grid.refuse_varied(&source)?;
         mesh_film::refuse_design_keys(&settings, &grid, &source)?;

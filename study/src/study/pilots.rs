@@ -34,7 +34,7 @@ use crate::job::{Job, JobId, Parameters};
 pub(super) const NEAREST: usize = 2;
 /// Best points of a search that run on finer meshes at most. Chosen: where three do not keep the limits there, the mesh of
 /// the search is too coarse for it.
-pub(super) const MAX_CONFIRMED: usize = 3;
+pub const MAX_CONFIRMED: usize = 3;
 /// Number of meshes of a pilot: three give an error without the table.
 const MESHES: usize = 3;
 

@@ -96,12 +96,12 @@ fn run_changed(
     jobs: &BTreeSet<JobId>,
     out: &mut dyn Write,
 ) -> Result<()> {
-    let searched = stored.study.names_searched();
+    let chosen = stored.study.names_chosen();
     let mut changed = Vec::new();
     for id in jobs {
         let Some(point) = stored.point(id) else { continue };
-        // Searched values, or the mesh of a pilot, are in no plan from the start.
-        let values = searched.iter().filter_map(|name| Some((name, parameter(point, name)?)));
+        // Searched values, or the mesh of a pilot, are in no plan from the start, and samples are numbered in their order.
+        let values = chosen.iter().filter_map(|name| Some((name, parameter(point, name)?)));
         let mut sets: Vec<String> = values.map(|(name, value)| format!("{name}={value}")).collect();
         if stored.study.is_pilot(point) {
             sets.push(format!("solver.meshes=[{}]", point.job.scene.design.subdivisions()));

@@ -69,7 +69,8 @@ pub(crate) const STRUCTURED: &[(&str, &str)] = &[
         "samples",
         "Inputs that are not known exactly, as in {\"number\": 64, \"of\": {\"film.youngs_modulus\": {\"normal\": [\"3.45 GPa\", \
          \"5 %\"]}}}: every point runs with each sample, and the answer says how probable it is that it is safe, how its \
-         measures spread, and which input makes the spread. method: sobol (default; more samples extend it) or \
+         measures spread, and which input makes the spread. {\"assumed\": true}: the range of what is assumed, and of \
+         friction. method: sobol (default; more samples extend it) or \
          latin_hypercube; seed; correlations.",
     ),
     (

@@ -7,6 +7,7 @@ use crate::analysis::answer::{Best, Optimum, Small};
 use crate::input::value::brief_number;
 use crate::job::result_limit::Safety;
 use crate::print::{count, range};
+use crate::study::MAX_CONFIRMED;
 
 /// Most points of a front that the answer names.
 const MAX_FRONT: usize = 12;
@@ -30,10 +31,12 @@ pub(super) fn lines(found: &Optimum) -> Vec<String> {
     for point in &found.refuted {
         lines.push(format!("better, but not on the finest mesh: {}", of_point(point)));
     }
-    if let ([_, ..], [best]) = (found.refuted.as_slice(), found.best.as_slice())
-        && best.confirmed_on.is_none()
-    {
-        lines.push("the best point did not run on a finer mesh: search on one".to_owned());
+    let unconfirmed = found.best.iter().all(|best| best.confirmed_on.is_none());
+    if found.refuted.len() == MAX_CONFIRMED && unconfirmed {
+        lines.push(
+            "no other point runs on finer meshes: that of the search is too coarse for it"
+                .to_owned(),
+        );
     }
     if found.best.is_empty() {
         let limits = if found.tried.iter().any(|one| one.measures.iter().all(Option::is_some)) {

@@ -7,6 +7,7 @@ use super::filter::Filter;
 use super::optimise::Optimise;
 use super::search::Search;
 use super::{OPTIMISE, REPLICATES, SAMPLES};
+use crate::accuracy::AssumedRanges;
 use crate::input::settings::Settings;
 use crate::input::source::Source;
 use crate::input::value::Value;
@@ -20,6 +21,8 @@ pub(super) struct Context<'a> {
     pub settings: &'a Settings,
     /// What results must meet to be safe.
     pub limits: &'a [ResultLimit],
+    /// The ranges of what is assumed.
+    pub assumed: &'a AssumedRanges,
     pub source: &'a Source,
     pub max_points: usize,
 }

@@ -63,7 +63,12 @@ impl Grid {
         for (name, value) in members(inputs, &of, source, SECTION)? {
             let path = format!("{of}.{name}");
             let column = self.column(name, &path, value, context)?;
-            distributions.push(read::distribution(self.columns[column].key, value, &path, source)?);
+            distributions.push(read::distribution(
+                (self.columns[column].key, context.assumed),
+                value,
+                &path,
+                source,
+            )?);
             columns.push(column);
         }
         if columns.is_empty() || columns.len() > sequence::MAX_INPUTS {

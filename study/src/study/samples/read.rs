@@ -25,9 +25,9 @@ const DISTRIBUTION: &str = "{\"uniform\": [low, high]}, log_uniform, {\"normal\"
 const FRICTION: &str = "contact.friction";
 const FRICTION_RANGE: [f64; 2] = [0.0, 0.48];
 
-/// Reads the distribution of a key.
+/// Reads the distribution of a key; `ranges` are those of what is assumed.
 pub(super) fn distribution(
-    key: &Key,
+    (key, ranges): (&Key, &AssumedRanges),
     json: &Json,
     path: &str,
     source: &Source,
@@ -49,7 +49,7 @@ pub(super) fn distribution(
         return Err(refuse("is not one distribution"));
     };
     if name == "assumed" {
-        return truncated(assumed(key, json, path, source)?, key, json, path, source);
+        return truncated(assumed((key, ranges), json, path, source)?, key, json, path, source);
     }
     if !matches!(key.kind, KeyKind::Quantity(_)) {
         let allowed = "{\"values\": […], \"weights\": […]}";
@@ -126,7 +126,7 @@ pub(super) fn distribution(
 
 /// The distribution of what is assumed, over its whole range.
 fn assumed(
-    key: &Key,
+    (key, ranges): (&Key, &AssumedRanges),
     json: &Json,
     path: &str,
     source: &Source,
@@ -141,7 +141,7 @@ fn assumed(
         let allowed = format!("{} or {FRICTION}", ASSUMED_KEYS.join(", "));
         source.error(path, json, "is not among what is assumed: give its distribution", allowed)
     })?;
-    Ok(Distribution::LogUniform(AssumedRanges::default().0[position]))
+    Ok(Distribution::LogUniform(ranges.0[position]))
 }
 
 /// A distribution between the ends that the file gives it.
