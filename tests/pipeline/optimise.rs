@@ -49,13 +49,21 @@ fn the_optimum_of_a_piston_is_at_its_limit() {
         .map(|name| of_job[name].as_f64().unwrap());
     let exact = flow * 296.803_052 * temperature / volume;
     assert!((value / exact - 1.0).abs() < 0.01, "{value} {exact}");
+    // As many points spread evenly come less near.
+    let even = found["of_even_points"].as_f64().unwrap();
+    assert!(even > 0.999 * value && even < 1.2 * value, "{even} {value}");
     // What was found after each generation never grows.
     let course = found["course"].as_array().unwrap();
     let after: Vec<f64> = course.iter().filter_map(|step| step[1][0].as_f64()).collect();
     assert!(after.len() > 2 && after.windows(2).all(|pair| pair[1] <= pair[0]), "{after:?}");
     assert_eq!(course.last().unwrap()[0], 24);
     let text = folder.stdout(&["run", "grid.json", "--no-report"]);
-    for part in ["answer", "nearest limit final_pressure", "spread evenly", "this is point"] {
+    for part in [
+        "answer",
+        "nearest limit final_pressure",
+        "of 24 points spread evenly about",
+        "this is point",
+    ] {
         assert!(text.contains(part), "{part}: {text}");
     }
 }

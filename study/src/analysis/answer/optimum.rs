@@ -27,6 +27,9 @@ pub struct Optimum {
     pub best: Vec<Best>,
     /// Better points, which do not keep the limits on the finest mesh.
     pub refuted: Vec<Best>,
+    /// The smallest value that a surrogate expects of as many points spread evenly, SI: what a grid of equal cost would
+    /// find; `None` for two measures, and before the search has ended.
+    pub of_even_points: Option<f64>,
     /// After each generation the number of points, and the smallest value of each measure so far among points that keep the
     /// limits, SI.
     pub course: Vec<(usize, Vec<Option<f64>>)>,
@@ -138,6 +141,7 @@ impl Optimum {
             ended: found.ended,
             best,
             refuted,
+            of_even_points: found.of_even_points,
             course: course(&found, minimised.len()),
             tried,
         })

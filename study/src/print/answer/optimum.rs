@@ -135,5 +135,9 @@ fn course(found: &Optimum, best: &Best) -> Option<String> {
             shown.brief(value)
         ),
     };
-    Some(format!("{before}; this is point {} of {}", best.number, found.points[0]))
+    let all = found.points[0];
+    let even = found.of_even_points.map_or_else(String::new, |value| {
+        format!("; of {all} points spread evenly about {}, by a surrogate", shown.brief(value))
+    });
+    Some(format!("{before}{even}; this is point {} of {all}", best.number))
 }

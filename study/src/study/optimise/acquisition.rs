@@ -75,6 +75,16 @@ impl Search<'_> {
         chosen
     }
 
+    /// The smallest value that is expected at this many points spread evenly, of those expected to keep the limits.
+    pub fn of_even_points(&self, number: usize) -> Option<f64> {
+        let margins = self.margins();
+        let measure = self.surrogates(&margins, 0).measure?;
+        let points = sobol(self.optimise.columns.len(), self.optimise.seed).take(number);
+        let places = points.map(|point| self.optimise.place(&self.optimise.values(&point)));
+        let kept = places.filter(|place| margins.iter().all(|margin| margin.at(place).0 > 0.0));
+        kept.map(|place| measure.at(&place).0).reduce(f64::min)
+    }
+
     fn words(&self) -> Vec<bool> {
         self.optimise.coordinates.iter().map(Coordinate::is_word).collect()
     }

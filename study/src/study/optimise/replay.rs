@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::acquisition::Search;
 use super::proposed::{self, Known};
 use super::trial::best;
 use super::{Optimise, Optimum, Trial, prior, sobol};
@@ -212,7 +213,10 @@ impl<'a> Replay<'a> {
     pub fn optimum(&self, ended: bool) -> Optimum {
         let trials = self.trials();
         let best = best(&trials);
-        Optimum { trials, best, budget: self.optimise.budget, ended }
+        let search = Search { optimise: self.optimise, trials: &trials, prior: &[], generation: 0 };
+        let one = ended && self.optimise.minimise.len() == 1;
+        let of_even_points = if one { search.of_even_points(trials.len()) } else { None };
+        Optimum { trials, best, of_even_points, budget: self.optimise.budget, ended }
     }
 
     /// Whether every job planned so far has ended.

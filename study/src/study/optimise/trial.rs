@@ -44,6 +44,8 @@ pub struct Optimum {
     /// Of the points that keep the limits the positions of the best, the best first; of two measures those of the front,
     /// by the first measure.
     pub best: Vec<usize>,
+    /// The smallest value that a surrogate expects of as many points spread evenly; `None` for two measures.
+    pub of_even_points: Option<f64>,
     /// Number of points in all.
     pub budget: usize,
     /// Whether no other point is to be tried: the budget is used up, or all others are refused or are jobs that it knows.
