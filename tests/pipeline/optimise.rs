@@ -246,6 +246,12 @@ fn the_best_point_is_one_that_keeps_its_limits_on_the_finest_mesh() {
     for (point, keeps) in refuted.iter().map(|one| (one, false)).chain([(best, true)]) {
         assert_eq!((&point["confirmed_on"], &point["keeps_limits"]), (&json!(4), &json!(keeps)));
     }
+    // It stands for its run on the finest mesh.
+    let rows: Vec<Value> =
+        serde_json::from_str(&folder.stdout(&["table", "grid.json", "--runs", "--json"])).unwrap();
+    let of_best = |row: &&Value| row["mass_flow_rate"] == best["parameters"]["mass_flow_rate"];
+    let finest = rows.iter().filter(of_best).find(|row| row["subdivisions"] == 4).unwrap();
+    assert_eq!(best["measures"][0]["stands_for"][0], finest["peak_vz_extrapolated"], "{best}");
     let value = |point: &Value| point["measures"][0]["value"].as_f64().unwrap();
     assert!(refuted.iter().all(|one| value(one) < value(best)), "{found}");
     let text = folder.stdout(&["run", "grid.json", "--no-report"]);

@@ -4,7 +4,7 @@
 use serde::{Serialize, Serializer};
 
 use super::{parameters, parameters_of};
-use crate::analysis::replicates::{Condensed, source};
+use crate::analysis::replicates::Condensed;
 use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
@@ -203,7 +203,7 @@ impl Best {
                 shown: column.shown.clone(),
                 value: trial.measures[k]?,
                 stands_for: points
-                    .spread(&source(table, column).name, point)
+                    .spread(&column.name, point)
                     .map(|[least, median, largest]| [median, least, largest]),
                 uncertainty: table.uncertainty(*measure, finest),
             })
