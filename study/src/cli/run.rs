@@ -129,7 +129,8 @@ pub(super) fn run_study(
         unit.or(column.map(|column| column.unit)).map(str::to_owned)
     })?;
     let instruction_set = super::instruction_set::selected()?;
-    let pool = options.threads.pool()?;
+    // Only a search with a prior computes while it plans.
+    let pool = (study.points_of_prior() > 0).then(|| options.threads.pool()).transpose()?;
     let (threads, note) = memory::threads(options.threads.count()?);
     let memory = Memory::new(threads);
     memory.check()?;
@@ -145,7 +146,8 @@ pub(super) fn run_study(
             name: &study.name,
             study: study.file(),
             planner: &|finished| {
-                let next = pool.install(|| plan::next_jobs(&study, finished));
+                let plan = || plan::next_jobs(&study, finished);
+                let next = pool.as_ref().map_or_else(plan, |pool| pool.install(plan));
                 if !study.minimised().is_empty() {
                     results.keep_proposed();
                 }

@@ -144,10 +144,8 @@ fn set_key(
         return Err(error);
     }
     if has_grid {
-        let removed = removes_axis(tree, path).then(|| format!("the axis of {path} in the grid"));
-        let varied =
-            [SAMPLES, OPTIMISE].into_iter().filter_map(|of| removes_varied(tree, path, of));
-        let removed = removed.into_iter().chain(varied);
+        let sections = [GRID, SAMPLES, OPTIMISE].into_iter();
+        let removed = sections.filter_map(|section| removed(tree, path, section));
         notes.extend(removed.map(|what| format!("{}: this value replaces {what}", flag(set))));
     }
     let mut target = &mut *tree;
@@ -168,15 +166,6 @@ fn same_key(name: &str, other: &str) -> bool {
     name == other || keys::find(other).is_some_and(|index| keys::find(name) == Some(index))
 }
 
-/// Removes the axis of a key, which has one value now; returns whether there was one. An axis that is
-/// zipped with others stays: they have a value for each of its values.
-fn removes_axis(tree: &mut Json, path: &str) -> bool {
-    let Some(Json::Object(members)) = tree.get_mut("grid") else { return false };
-    let before = members.len();
-    members.retain(|(name, _)| GRID_WORDS.contains(&name.as_str()) || !same_key(name, path));
-    members.len() < before
-}
-
 /// The members of a section that varies keys, as `samples.of`.
 fn varied<'a>(tree: &'a mut Json, section: &str) -> Option<&'a mut Vec<(String, Json)>> {
     let mut target = tree;
@@ -189,17 +178,21 @@ fn varied<'a>(tree: &'a mut Json, section: &str) -> Option<&'a mut Vec<(String, 
     }
 }
 
-/// Removes a key from a section that varies it, with its correlations, and the section that then varies nothing; returns
-/// what was removed.
-fn removes_varied(tree: &mut Json, path: &str, section: &str) -> Option<String> {
+/// Removes a key, which has one value now, from a section that varies it, with its correlations, and a section of samples or
+/// a search that then varies nothing; returns what was removed. An axis that is zipped with others stays: they have a value
+/// for each of its values.
+fn removed(tree: &mut Json, path: &str, section: &str) -> Option<String> {
     let members = varied(tree, section)?;
     let before = members.len();
-    members.retain(|(key, _)| !same_key(key, path));
-    let (left, removed) = (members.len(), before - members.len());
-    if removed == 0 {
+    let is_axis = |key: &str| section != GRID || !GRID_WORDS.contains(&key);
+    members.retain(|(key, _)| !is_axis(key) || !same_key(key, path));
+    let left = members.len();
+    if left == before {
         return None;
     }
-    let (name, _) = section.split_once('.')?;
+    let Some((name, _)) = section.split_once('.') else {
+        return Some(format!("the axis of {path} in the grid"));
+    };
     if let Some(Json::List(pairs)) = tree.get_mut(name)?.get_mut("correlations") {
         let of_key = |item: &Json| matches!(item, Json::Text(name) if same_key(name, path));
         pairs.retain(|pair| !matches!(pair, Json::List(items) if items.iter().any(of_key)));
@@ -210,8 +203,8 @@ fn removes_varied(tree: &mut Json, path: &str, section: &str) -> Option<String> 
         sections.retain(|(known, _)| known != name);
     }
     // Inputs are numbered in their order.
-    let others =
-        if section == SAMPLES && left > 0 { "; other inputs may get other samples" } else { "" };
+    let has_others = section == SAMPLES && left > 0;
+    let others = if has_others { "; other inputs may get other samples" } else { "" };
     Some(format!("{path} in {section}{others}"))
 }
 

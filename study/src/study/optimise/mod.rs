@@ -71,6 +71,11 @@ impl Optimise {
         self.coordinates.iter().zip(values).map(|(of, value)| of.place(value)).collect()
     }
 
+    /// The values of what it varies among those of all columns.
+    fn varied(&self, values: &[Value]) -> Vec<Value> {
+        self.columns.iter().map(|column| values[*column].clone()).collect()
+    }
+
     /// The first points: those of the Sobol' sequence, each once.
     pub fn first_values(&self) -> Vec<Vec<Value>> {
         let mut all: Vec<Vec<Value>> = Vec::new();

@@ -28,6 +28,9 @@ pub(crate) struct Replay<'a> {
     first: Vec<Value>,
     /// Number of generations planned.
     generations: u32,
+    /// Points of the cheap model and their jobs, those of each place once.
+    prior: Vec<Tried>,
+    prior_jobs: Vec<Job>,
 }
 
 /// A point with its runs.
@@ -47,8 +50,17 @@ impl<'a> Replay<'a> {
         let optimise = study.grid.optimise.as_ref()?;
         let finished = finished.iter().map(|row| (&row.id, row)).collect();
         let first = study.points().first().map(values_of).unwrap_or_default();
-        let (tried, known) = (Vec::new(), HashSet::new());
-        let mut replay = Self { study, optimise, finished, tried, known, first, generations: 0 };
+        let mut replay = Self {
+            study,
+            optimise,
+            finished,
+            tried: Vec::new(),
+            known: HashSet::new(),
+            first,
+            generations: 0,
+            prior: Vec::new(),
+            prior_jobs: Vec::new(),
+        };
         replay.add(study.points());
         Some(replay)
     }
@@ -56,10 +68,7 @@ impl<'a> Replay<'a> {
     /// Adds the points of a generation. One whose jobs are all those of others does not count.
     pub fn add(&mut self, points: &[Point]) {
         let optimise = self.optimise;
-        let varied = |point: &Point| -> Vec<Value> {
-            let values = values_of(point);
-            optimise.columns.iter().map(|column| values[*column].clone()).collect()
-        };
+        let varied = |point: &Point| optimise.varied(&values_of(point));
         // Runs of one point stand together.
         for runs in points.chunk_by(|a, b| varied(a) == varied(b)) {
             let is_new = runs.iter().any(|run| !self.known.contains(&run.job.id));
@@ -67,7 +76,7 @@ impl<'a> Replay<'a> {
             if !is_new {
                 continue;
             }
-            let place = self.optimise.place(&varied(&runs[0]));
+            let place = optimise.place(&varied(&runs[0]));
             let mut jobs: Vec<JobId> = Vec::new();
             for run in runs.iter().filter(|run| run.infeasible.is_none()) {
                 if !jobs.contains(&run.job.id) {
@@ -87,17 +96,17 @@ impl<'a> Replay<'a> {
         if batch == 0 {
             return Vec::new();
         }
+        self.add_prior();
         let is_new = |chosen: &[Value]| {
             self.points_of(chosen).iter().any(|point| !self.known.contains(&point.job.id))
         };
         let (optimise, generation) = (self.optimise, (batch, self.generations));
-        let (trials, (prior, jobs)) = (self.trials(), self.prior());
-        let judging = self.study.judging();
+        let (trials, judging) = (self.trials(), self.study.judging());
         let run = || {
-            let rows = prior::rows(&jobs, judging);
-            self.trials_of(&prior, &rows.iter().map(|row| (&row.id, row)).collect())
+            let rows = prior::rows(&self.prior_jobs, judging);
+            self.trials_of(&self.prior, &rows.iter().map(|row| (&row.id, row)).collect())
         };
-        let ids: Vec<&str> = jobs.iter().map(|job| job.id.as_str()).collect();
+        let ids: Vec<&str> = self.prior_jobs.iter().map(|job| job.id.as_str()).collect();
         let known = Known { trials: &trials, beside: &format!("{judging:?} {ids:?}"), prior: &run };
         let proposed = proposed::next(optimise, &known, generation, &is_new);
         proposed.iter().flat_map(|chosen| self.points_of(chosen)).collect()
@@ -117,41 +126,34 @@ impl<'a> Replay<'a> {
         values
     }
 
-    /// The values of what is varied among those of all columns.
-    fn varied(&self, values: &[Value]) -> Vec<Value> {
-        self.optimise.columns.iter().map(|column| values[*column].clone()).collect()
-    }
-
-    /// Points of the cheap model, spread evenly and those of the search, with their jobs.
-    fn prior(&self) -> (Vec<Tried>, Vec<Job>) {
-        let optimise = self.optimise;
-        let (mut all, mut jobs) = (Vec::new(), Vec::new());
+    /// Adds the points of the cheap model that are missing: those spread evenly, then those of the search.
+    fn add_prior(&mut self) {
+        let (optimise, grid) = (self.optimise, &self.study.grid);
         if !optimise.has_prior {
-            return (all, jobs);
+            return;
         }
-        let grid = &self.study.grid;
         let replicates: Vec<usize> = (0..grid.columns.len())
             .filter(|column| grid.is_replicate(*column) && !grid.is_sampled(*column))
             .collect();
         let spread = sobol(optimise.columns.len(), optimise.seed).take(prior::POINTS);
-        let tried = self.tried.iter().map(|tried| self.varied(&tried.values));
-        let mut known: Vec<Vec<Value>> = Vec::new();
-        for chosen in spread.map(|point| optimise.values(&point)).chain(tried) {
-            if known.contains(&chosen) {
+        let spread = spread.filter(|_| self.prior.is_empty()).map(|point| optimise.values(&point));
+        let tried = self.tried.iter().map(|tried| optimise.varied(&tried.values));
+        for chosen in spread.chain(tried).collect::<Vec<_>>() {
+            let values = self.with(&chosen);
+            if self.prior.iter().any(|known| known.values == values) {
                 continue;
             }
             let runs = self.points_of(&chosen);
             // What the study refuses is no point of the search either.
-            if !runs.is_empty() {
-                let of_point = prior::jobs(&runs, &replicates);
-                let runs = of_point.iter().map(|job| job.id.clone()).collect();
-                jobs.extend(of_point);
-                let (values, place) = (self.with(&chosen), optimise.place(&chosen));
-                all.push(Tried { values, place, generation: 0, runs });
+            if runs.is_empty() {
+                continue;
             }
-            known.push(chosen);
+            let jobs = prior::jobs(&runs, &replicates);
+            let runs = jobs.iter().map(|job| job.id.clone()).collect();
+            let place = optimise.place(&chosen);
+            self.prior.push(Tried { values, place, generation: 0, runs });
+            self.prior_jobs.extend(jobs);
         }
-        (all, jobs)
     }
 
     /// What is known of each point.
@@ -183,7 +185,7 @@ impl<'a> Replay<'a> {
                 |row: &&FinishedRow| row.limits.iter().all(|one| one.as_ref().is_some_and(safe));
             let keeps_limits = measures.iter().all(Option::is_some) && known.iter().all(keeps);
             Trial {
-                values: self.varied(&tried.values),
+                values: self.optimise.varied(&tried.values),
                 place: tried.place.clone(),
                 generation: tried.generation,
                 jobs: tried.runs.clone(),
