@@ -17,6 +17,12 @@ if [ ! -x "$venv/bin/cmake" ]; then
   "$venv/bin/pip" install --quiet --disable-pip-version-check "cmake==$cmake_version"
 fi
 
+# It starts from what the normal build has compiled: all packages but those of HDF5 are the same.
+if [ ! -d "$dist/build" ] && [ -d "$target/release" ]; then
+  mkdir "$dist/build"
+  cp -a --reflink=auto "$target/release" "$dist/build"
+fi
+
 PATH=$venv/bin:$PATH LIBZ_SYS_STATIC=1 CARGO_TARGET_DIR=$dist/build \
   cargo build --release --locked -p billow-study --features self-contained
 
