@@ -40,6 +40,12 @@ fn keys_are_found_by_name_and_by_meaning() {
     assert!(mass.iter().all(|key| key.contains("mass")), "{mass:?}");
     // A column of the table.
     assert_eq!(listed(&["keys", "peak_vz", "--json"]), ["peak_vz"]);
+    let peaks = listed(&["keys", "peak", "--json"]);
+    assert!(
+        peaks.contains(&"peak_speed".to_owned())
+            && peaks.iter().all(|name| !name.contains("error"))
+    );
+    assert!(listed(&["keys", "peak_speed_error", "--json"]).len() == 2);
     assert!(stdout(&["keys", "peak_vz"]).starts_with("peak_vz (column of the table)\n"));
 
     let found = stdout(&["keys", "t_90_z_rim_error_below"]);

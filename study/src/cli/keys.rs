@@ -8,7 +8,7 @@ use serde_json::ser::PrettyFormatter;
 
 use super::options::OutputOptions;
 use super::{Format, output_error};
-use crate::accuracy::{NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED};
+use crate::accuracy::{NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED, is_error_column};
 use crate::input::keys::listing::{FileKind, KeyDescription, REQUIRED, entries};
 use crate::input::schema;
 use crate::input::value::Value;
@@ -128,17 +128,18 @@ fn described(kind: &str, entry: &KeyDescription) -> String {
 /// Whether an entry is found.
 type Test<'a> = &'a dyn Fn(&KeyDescription) -> bool;
 
-/// The keys with this name, else those with the word in their name, else the columns of the table with it in theirs,
-/// else the keys with it in their meaning, else the columns.
+/// The keys with this name, else those with the word in their name, else the columns of the table with it in theirs
+/// (measures before their errors), else the keys with it in their meaning, else the columns.
 fn search(file: FileKind, word: &str) -> Result<Vec<(&'static str, KeyDescription)>> {
     let lower = word.trim().to_lowercase();
     let (keys, columns) = (entries(file), columns());
     // Another case of one letter is another key: N panels, n subdivisions.
-    let tests: [(&'static str, &[KeyDescription], Test<'_>); 7] = [
+    let tests: [(&'static str, &[KeyDescription], Test<'_>); 8] = [
         (file.name(), &keys, &|entry| entry.path == word || leaf(&entry.path) == word),
         (file.name(), &keys, &|entry| leaf(&entry.path).to_lowercase() == lower),
         (file.name(), &keys, &|entry| has_word(&entry.path, &lower)),
         (COLUMN, &columns, &|entry| entry.path == lower),
+        (COLUMN, &columns, &|entry| !is_error_column(&entry.path) && has_word(&entry.path, &lower)),
         (COLUMN, &columns, &|entry| has_word(&entry.path, &lower)),
         (file.name(), &keys, &|entry| has_word(&entry.meaning, &lower)),
         (COLUMN, &columns, &|entry| has_word(&entry.meaning, &lower)),

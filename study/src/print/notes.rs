@@ -9,12 +9,14 @@ use billow_solver::scene::{Film, ModelKind, Scene};
 use super::legend::three_meshes;
 use crate::accuracy::row::{OF_CAPSULES, has_error};
 use crate::accuracy::{Features, MeshErrors, Method, PROMISED, choice};
+use crate::analysis::answer::samples_needed;
 use crate::input::keys::numerical::{MESH_PARAMETER, SEED};
 use crate::input::keys::{MODELS, Model};
 use crate::input::value::{Value, brief_number};
 use crate::job::point::Point;
 use crate::job::row::ColumnId;
 use crate::job::surroundings::Surroundings;
+use crate::print::count;
 use crate::study::ground::pressure_below_ambient;
 use crate::study::{Meshes, Study, features, meshes_text};
 
@@ -92,6 +94,7 @@ fn of_points(study: &Study) -> Vec<String> {
         );
     }
     lines.extend(single_runs(study));
+    lines.extend(few_samples(study));
     lines.extend(bending::need(study));
     lines.extend(bending::yielding_creases(study));
     if film(|film| film.compression < 1.0 && film.bending) {
@@ -119,6 +122,16 @@ fn single_runs(study: &Study) -> Option<String> {
             "warning: one run decides each value of {parameter}, and another seed may move the border; \
              \"replicates\": {{\"seed\": 5}} repeats each value"
         )
+    })
+}
+
+/// Samples too few for what each input makes.
+fn few_samples(study: &Study) -> Option<String> {
+    let (inputs, samples) = (study.sampled().len(), study.sample_count());
+    let needed = samples_needed(inputs);
+    (inputs > 0 && samples < needed).then(|| {
+        let inputs = count(inputs, "input");
+        format!("note: {samples} samples of {inputs}: the answer does not say what each input makes; {needed} would")
     })
 }
 

@@ -243,6 +243,11 @@ impl Study {
         self.grid.sampled()
     }
 
+    /// Number of samples of each point: 1 without.
+    pub fn sample_count(&self) -> usize {
+        self.grid.sample_count()
+    }
+
     /// Whether each input that is sampled takes its values whatever the others are.
     pub fn samples_are_independent(&self) -> bool {
         let correlations = self.file.get(SAMPLES).and_then(|samples| samples.get("correlations"));

@@ -24,7 +24,13 @@ pub(super) fn read(json: Option<&Json>, source: &Source) -> Result<Vec<ResultLim
     let mut limits: Vec<ResultLimit> = Vec::new();
     for (name, value) in object(json, &STUDY, "limits", source)? {
         let path = format!("limits.{name}");
-        let column = column(name).ok_or_else(|| unknown(name, &path, value, source))?;
+        let column = column(name).ok_or_else(|| {
+            let what = (
+                "is not a measure that can have a limit",
+                can_be_limited as fn(&RowColumn) -> bool,
+            );
+            unknown(what, name, (&path, value), source)
+        })?;
         if limits.iter().any(|known| known.measure == column.id) {
             let problem = format!("limits {} twice", column.name);
             return Err(source.error(&path, value, problem, "each measure once"));
@@ -119,19 +125,23 @@ fn bound(
     Ok(Condition::Bound { bound, above, or_equal })
 }
 
-fn unknown(name: &str, path: &str, value: &Json, source: &Source) -> InputError {
-    let known = COLUMNS.iter().filter(|column| can_be_limited(column)).map(|column| column.name);
-    let near = or_nearest(name, known);
-    let problem = format!("is not a measure that can have a limit{near}");
-    let mut error = source.error(
-        path,
-        value,
-        problem,
-        "verdict, peak_vz, film_stress_99, t_deployed_since_release and other measures",
-    );
-    "docs/reference/columns.md lists them: groups outcome, measures, audit"
-        .clone_into(&mut error.hint);
-    error
+/// The error of a name that is not that of a column that `can` stand there; `problem`: what it is not.
+pub(super) fn unknown(
+    (problem, can): (&str, fn(&RowColumn) -> bool),
+    name: &str,
+    (path, value): (&str, &Json),
+    source: &Source,
+) -> InputError {
+    let known = || COLUMNS.iter().filter(|column| can(column)).map(|column| column.name);
+    let near = or_nearest(name, known());
+    let begin = name.split('_').next().unwrap_or_default();
+    let hint = if near.is_empty() && known().any(|name| name.split('_').next() == Some(begin)) {
+        format!("billow keys {begin} lists those with {begin} in their name")
+    } else {
+        "docs/reference/columns.md lists them: groups outcome, measures, audit".to_owned()
+    };
+    let allowed = "peak_vz, film_stress_99, t_deployed_since_release and other measures";
+    source.error(path, value, format!("{problem}{near}"), allowed).with_hint(hint)
 }
 
 #[cfg(test)]

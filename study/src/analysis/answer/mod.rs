@@ -33,7 +33,7 @@ pub use optimum::{Best, Optimum, Small, Tried};
 pub use points::{MixedPoint, PointCounts, VerdictSensitivity};
 pub use safety::{Nearest, SafeCounts, Safety};
 pub use searches::{Found, Searches};
-pub use tolerances::{Importance, MESH, MIN_SEEN, Part, Quantile, Tolerance};
+pub use tolerances::{Importance, MESH, MIN_SEEN, Part, Quantile, Tolerance, samples_needed};
 pub use trust::Trust;
 
 /// Most values of a parameter that the answer compares. Chosen: more are a chart, or `billow compare --rank`.

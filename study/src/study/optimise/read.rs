@@ -10,9 +10,9 @@ use crate::input::value::Value;
 use crate::job::point::Point;
 use crate::job::row::{COLUMNS, CellType, ColumnGroup, ColumnId, RowColumn};
 use crate::platform::error::InputError;
-use crate::platform::nearest::or_nearest;
 use crate::study::OPTIMISE;
 use crate::study::grid::{Axis, AxisKind, Context, Grid};
+use crate::study::result_limits::unknown;
 use crate::surrogate::Coordinate;
 
 /// Keys that it may vary at most. Chosen: a surrogate of more needs more points than a study of film has.
@@ -110,11 +110,8 @@ fn minimised(json: Option<&Json>, source: &Source) -> Result<Vec<ColumnId>, Inpu
         let text = if let Json::Text(text) = name { text.as_str() } else { "" };
         let Some(column) = COLUMNS.iter().find(|column| column.name == text && is_measure(column))
         else {
-            let known =
-                COLUMNS.iter().filter(|column| is_measure(column)).map(|column| column.name);
-            let problem = format!("is not a measure{}", or_nearest(text, known));
-            let allowed = "columns of the table with numbers: billow keys --columns";
-            return Err(source.error(&path, *name, problem, allowed));
+            let what = ("is not a measure", is_measure as fn(&RowColumn) -> bool);
+            return Err(unknown(what, text, (&path, name), source));
         };
         found.push(column.id);
     }

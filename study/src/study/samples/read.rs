@@ -33,6 +33,11 @@ pub(super) fn distribution(
     source: &Source,
 ) -> Result<Distribution, InputError> {
     let refuse = |problem: &str| source.error(path, json, problem, DISTRIBUTION);
+    if let Json::List(_) = json {
+        let hint =
+            format!("{{\"values\": {json}}}, or two numbers as {{\"uniform\": [low, high]}}");
+        return Err(refuse("is a list, not an object").with_hint(hint));
+    }
     let parts = members(json, path, source, DISTRIBUTION)?;
     let kinds: Vec<&(String, Json)> =
         parts.iter().filter(|(name, _)| name != "from" && name != "to").collect();

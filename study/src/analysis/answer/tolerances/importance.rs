@@ -28,6 +28,11 @@ pub struct Importance {
     pub parts: Vec<Part>,
 }
 
+/// Samples that these many inputs need, so that it can be said what each makes.
+pub fn samples_needed(inputs: usize) -> usize {
+    POINTS_PER_INPUT * inputs.max(2)
+}
+
 impl Importance {
     /// What the inputs make: `values` of a measure, one at each row. With `independent` inputs each takes its values
     /// whatever the others are.
@@ -40,7 +45,7 @@ impl Importance {
         values: &[f64],
         independent: bool,
     ) -> Result<Self, String> {
-        let needed = POINTS_PER_INPUT * inputs.len().max(2);
+        let needed = samples_needed(inputs.len());
         if rows.len() < needed {
             return Err(format!("what each input makes: {} samples, {needed} needed", rows.len()));
         }

@@ -31,7 +31,7 @@ mod importance;
 mod parts;
 mod quantile;
 
-pub use importance::{Importance, MIN_SEEN};
+pub use importance::{Importance, MIN_SEEN, samples_needed};
 pub use parts::Part;
 pub use quantile::Quantile;
 
