@@ -34,7 +34,7 @@ pub const TEMPERATURE: f64 = 293.0;
 pub const LOSS_FACTOR: f64 = 0.015;
 /// Frequency of the largest loss factor, Hz. Assumed: that of the capsule's structural vibrations.
 pub const LOSS_FREQUENCY: f64 = 1000.0;
-/// Numerical damping ratio. Chosen by the runs of docs/performance.md.
+/// Numerical damping ratio. Chosen by the runs of docs/experiments.md.
 pub const NUMERICAL_DAMPING: f64 = 1e-4;
 
 impl Film {

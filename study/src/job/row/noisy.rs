@@ -1,7 +1,7 @@
 //! Measures that small causes change much, and the measures that headlines use.
 //!
 //! A measure is noisy if the seed, the time step, the numerical damping or the contact distance changes it
-//! by more than 3 % on the capsule of the paper (docs/performance.md). Compare noisy measures over several
+//! by more than 3 % on the capsule of the paper (docs/experiments.md). Compare noisy measures over several
 //! seeds. `billow compare` and the answer of a study use none by default, nor does the table, except `peak_vz`
 //! where strategies are compared.
 
