@@ -1,6 +1,7 @@
 //! Mesh errors of rows.
 
 mod advice;
+mod held_back;
 mod meshes;
 
 use std::process::Output;
