@@ -17,10 +17,12 @@ if [ ! -x "$venv/bin/cmake" ]; then
   "$venv/bin/pip" install --quiet --disable-pip-version-check "cmake==$cmake_version"
 fi
 
-# It starts from what the normal build has compiled: all packages but those of HDF5 are the same.
+# It starts from what the normal build has compiled: all but HDF5, and what depends on it, is the same.
 if [ ! -d "$dist/build" ] && [ -d "$target/release" ]; then
-  mkdir "$dist/build"
-  cp -a --reflink=auto "$target/release" "$dist/build"
+  rm -rf "$dist/build.part"
+  mkdir "$dist/build.part"
+  cp -a --reflink=auto "$target/release" "$dist/build.part"
+  mv "$dist/build.part" "$dist/build"
 fi
 
 PATH=$venv/bin:$PATH LIBZ_SYS_STATIC=1 CARGO_TARGET_DIR=$dist/build \

@@ -133,6 +133,8 @@ fn a_key_that_is_set_is_not_sampled_and_a_sample_runs_with_other_settings() {
     close(&json!(ratio), 0.008 / row["mass_flow_rate"].as_f64().unwrap(), 0.02);
     let said = stderr(&folder.run(&["plan", "grid.json", "--set", "mass_flow_rate=5 g/s"]));
     assert!(said.contains("replaces gas.mass_flow_rate in samples.of"), "{said}");
+    let said = stderr(&folder.run(&["plan", "grid.json"]));
+    assert!(said.contains("8 samples of 2 inputs") && said.contains("at least 10"), "{said}");
 }
 
 #[test]

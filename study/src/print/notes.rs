@@ -131,7 +131,7 @@ fn few_samples(study: &Study) -> Option<String> {
     let needed = samples_needed(inputs);
     (inputs > 0 && samples < needed).then(|| {
         let inputs = count(inputs, "input");
-        format!("note: {samples} samples of {inputs}: the answer does not say what each input makes; {needed} would")
+        format!("note: {samples} samples of {inputs}: the answer does not say what each input makes; it needs at least {needed}")
     })
 }
 

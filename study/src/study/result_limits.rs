@@ -125,7 +125,11 @@ fn bound(
     Ok(Condition::Bound { bound, above, or_equal })
 }
 
-/// The error of a name that is not that of a column that `can` stand there; `problem`: what it is not.
+/// Most measures that an error lists.
+const MAX_LISTED: usize = 8;
+
+/// The error of a name that is not that of a column that `can` stand there; `problem`: what it is not. It names the nearest
+/// column, else those that begin with the same word.
 pub(super) fn unknown(
     (problem, can): (&str, fn(&RowColumn) -> bool),
     name: &str,
@@ -134,14 +138,17 @@ pub(super) fn unknown(
 ) -> InputError {
     let known = || COLUMNS.iter().filter(|column| can(column)).map(|column| column.name);
     let near = or_nearest(name, known());
-    let begin = name.split('_').next().unwrap_or_default();
-    let hint = if near.is_empty() && known().any(|name| name.split('_').next() == Some(begin)) {
-        format!("billow keys {begin} lists those with {begin} in their name")
+    let word = |name: &str| name.split('_').next().map(str::to_owned);
+    let alike: Vec<&str> =
+        known().filter(|known| word(known) == word(name)).take(MAX_LISTED).collect();
+    let allowed = if near.is_empty() && !alike.is_empty() {
+        format!("{} and other measures", alike.join(", "))
     } else {
-        "docs/reference/columns.md lists them: groups outcome, measures, audit".to_owned()
+        "peak_vz, film_stress_99, t_deployed_since_release and other measures".to_owned()
     };
-    let allowed = "peak_vz, film_stress_99, t_deployed_since_release and other measures";
-    source.error(path, value, format!("{problem}{near}"), allowed).with_hint(hint)
+    source
+        .error(path, value, format!("{problem}{near}"), allowed)
+        .with_hint("docs/reference/columns.md lists the measures")
 }
 
 #[cfg(test)]

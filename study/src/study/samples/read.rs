@@ -33,7 +33,9 @@ pub(super) fn distribution(
     source: &Source,
 ) -> Result<Distribution, InputError> {
     let refuse = |problem: &str| source.error(path, json, problem, DISTRIBUTION);
-    if let Json::List(_) = json {
+    if let Json::List(items) = json
+        && items.len() > 1
+    {
         let hint =
             format!("{{\"values\": {json}}}, or two numbers as {{\"uniform\": [low, high]}}");
         return Err(refuse("is a list, not an object").with_hint(hint));
