@@ -25,11 +25,11 @@ pub(super) fn read(json: Option<&Json>, source: &Source) -> Result<Vec<ResultLim
     for (name, value) in object(json, &STUDY, "limits", source)? {
         let path = format!("limits.{name}");
         let column = column(name).ok_or_else(|| {
-            let what = (
+            let said = [
                 "is not a measure that can have a limit",
-                can_be_limited as fn(&RowColumn) -> bool,
-            );
-            unknown(what, name, (&path, value), source)
+                "verdict, peak_vz, film_stress_99, t_deployed_since_release",
+            ];
+            unknown(said, can_be_limited, name, (&path, value), source)
         })?;
         if limits.iter().any(|known| known.measure == column.id) {
             let problem = format!("limits {} twice", column.name);
@@ -128,26 +128,25 @@ fn bound(
 /// Most measures that an error lists.
 const MAX_LISTED: usize = 8;
 
-/// The error of a name that is not that of a column that `can` stand there; `problem`: what it is not. It names the nearest
-/// column, else those that begin with the same word.
+/// The error of a name that is not that of a column that `can` stand there. It names the nearest column, else those that
+/// begin with the same word, else `examples`; `problem`: what the name is not.
 pub(super) fn unknown(
-    (problem, can): (&str, fn(&RowColumn) -> bool),
+    [problem, examples]: [&str; 2],
+    can: fn(&RowColumn) -> bool,
     name: &str,
     (path, value): (&str, &Json),
     source: &Source,
 ) -> InputError {
     let known = || COLUMNS.iter().filter(|column| can(column)).map(|column| column.name);
     let near = or_nearest(name, known());
-    let word = |name: &str| name.split('_').next().map(str::to_owned);
+    let first = name.split('_').next();
     let alike: Vec<&str> =
-        known().filter(|known| word(known) == word(name)).take(MAX_LISTED).collect();
-    let allowed = if near.is_empty() && !alike.is_empty() {
-        format!("{} and other measures", alike.join(", "))
-    } else {
-        "peak_vz, film_stress_99, t_deployed_since_release and other measures".to_owned()
-    };
+        known().filter(|known| known.split('_').next() == first).take(MAX_LISTED).collect();
+    let alike = alike.join(", ");
+    let listed = if near.is_empty() && !alike.is_empty() { &alike } else { examples };
+    let problem = format!("{problem}{near}");
     source
-        .error(path, value, format!("{problem}{near}"), allowed)
+        .error(path, value, problem, format!("{listed} and other measures"))
         .with_hint("docs/reference/columns.md lists the measures")
 }
 

@@ -4,8 +4,9 @@
 //! kept: the value on n 24 lies within the error of the run on n 4, and on n 8
 //! ```
 //! The runs are stored, since they take hours, with n 24 of 25 of the 40 scenes: the rows of `billow table
-//! results/held-back --json --si --where "status == 'done'" --columns job,status,verdict,top_radius,height,…` (the promised
-//! measures last), rounded to six digits. A change of the table is judged here in a moment; `--nocapture` prints each measure.
+//! results/held-back --json --si --where "status == 'done'" --columns job,status,verdict,top_radius,height,…` (the
+//! promised measures last), rounded to six digits. A change of the table is judged here in a moment; `--nocapture`
+//! prints each measure.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,7 +20,8 @@ use billow_study::study::plan::next_jobs;
 /// Part of all values that keep their error, at least: the table promises 19 of 20 runs of scenes like those it was made
 /// from, and these were drawn after it.
 const KEPT: f64 = 0.92;
-/// The same of one measure on one mesh. Chosen below the worst row of today (14 of 20): some 20 scenes tell little of one.
+/// The same of one measure on one mesh. Chosen below the worst row of today (14 of 20): some 20 scenes tell little of
+/// one row.
 const KEPT_OF_ROW: f64 = 0.65;
 /// The finest mesh, and those whose errors are judged.
 const FINEST: u32 = 24;
@@ -64,7 +66,8 @@ fn scenes() -> Vec<Runs> {
     scenes.into_values().collect()
 }
 
-/// Of a measure on a mesh: how many values keep their error and of how many, median difference and half width, relative.
+/// Of a measure on a mesh: how many values keep their error and of how many, median difference and half width,
+/// relative.
 fn judged(scenes: &[Runs], index: usize, mesh: u32) -> ([usize; 2], [f64; 2]) {
     let promised = &PROMISED[index];
     let (mut kept, mut differences, mut widths) = (0, Vec::new(), Vec::new());

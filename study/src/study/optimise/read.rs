@@ -110,8 +110,8 @@ fn minimised(json: Option<&Json>, source: &Source) -> Result<Vec<ColumnId>, Inpu
         let text = if let Json::Text(text) = name { text.as_str() } else { "" };
         let Some(column) = COLUMNS.iter().find(|column| column.name == text && is_measure(column))
         else {
-            let what = ("is not a measure", is_measure as fn(&RowColumn) -> bool);
-            return Err(unknown(what, text, (&path, name), source));
+            let said = ["is not a measure", "peak_vz, peak_speed, t_deployed_since_release"];
+            return Err(unknown(said, is_measure, text, (&path, name), source));
         };
         found.push(column.id);
     }
