@@ -3,7 +3,7 @@
 //! ```text
 //! b(x) = b_base + Σ_f s_f u_f(x)       b = ln(m/m_f);  u_f: coordinate of the feature f, [`super::coordinates`]
 //! m e^−(b ± w)                         where the value m_f on the finest mesh is
-//! w: the distance from b(x) that 19 of 20 runs keep, of scenes that were left out
+//! w: the distance from b(x) that 19 of 20 runs keep, of scenes that were left out or held back
 //! over the value itself:  below it at most 1 − e^−(b + w), above it at most e^(w − b) − 1, and never less than 0
 //! ```
 //! It is an interval about the corrected value, and the value is in it.
@@ -40,9 +40,9 @@ pub struct Entry {
     pub slopes: [f64; FEATURES],
     /// w: the distance of a run from the bias of its scene that 19 of 20 keep; of a pair of meshes or a change likewise.
     pub width: f64,
-    /// Number of runs.
+    /// Number of runs of the regression.
     pub runs: usize,
-    /// Number of scenes.
+    /// Number of scenes of the regression.
     pub scenes: usize,
 }
 

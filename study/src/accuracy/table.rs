@@ -1,5 +1,6 @@
 //! The table of mesh errors: how far a measure is from its value on the finest mesh, by model, mesh and kind of
-//! scene. `billow-checks converge --table` writes it from stored results; the program contains it.
+//! scene. `billow-checks converge --table` writes it from stored results, `billow-checks held-back --table` widens it to
+//! what other scenes keep too; the program contains it.
 //!
 //! ```text
 //! b = F ln(m/m_ref)                            bias of a mesh: median over seeds, m_ref on the reference mesh

@@ -33,6 +33,8 @@ enum Command {
     Pareto(exact::Args),
     /// Show to what each measure of a study tends as the mesh is refined.
     Converge(convergence::command::Args),
+    /// Compare the table of mesh errors with scenes that its regressions were not made from.
+    HeldBack(convergence::held_back::Args),
 }
 
 fn main() -> ExitCode {
@@ -54,6 +56,7 @@ fn run(out: &mut dyn Write) -> Result<()> {
             Command::Bench(args) => bench::run(args, out),
             Command::Pareto(args) => exact::run(args, out),
             Command::Converge(args) => convergence::command::run(args, out),
+            Command::HeldBack(args) => convergence::held_back::run(args, out),
         },
         Err(error) if !error.use_stderr() => {
             write!(out, "{}", error.render()).map_err(output_error)

@@ -1,7 +1,6 @@
 //! Mesh errors of rows.
 
 mod advice;
-mod held_back;
 mod meshes;
 
 use std::process::Output;

@@ -15,6 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use billow_solver::scene::ModelKind;
 
+use super::lots::FINEST;
 use super::regression::{Point, nineteen_of_twenty, regression};
 use super::runs::{MeshRun, SceneRuns};
 use billow_study::accuracy::features::FEATURES;
@@ -32,19 +33,17 @@ const MIN_SCENES: usize = 5;
 /// Weights of an extrapolated value are at most this. Chosen: first order of meshes that differ by half gives 1, by
 /// a quarter 3.
 const MAX_WEIGHT: f64 = 3.0;
-/// Subdivisions of the finest mesh. Chosen: that of the runs of `studies/held-back.json`.
-const FINEST: u32 = 24;
 /// An assumed value that differs (empty: none does), a model, and subdivisions.
 type Kind = (String, u8, u32);
 
 /// One scene for one measure: v by kind and seed.
-struct Scene {
-    features: [f64; FEATURES],
+pub(super) struct Ratios {
+    pub(super) features: [f64; FEATURES],
     values: BTreeMap<Kind, BTreeMap<u64, f64>>,
 }
 
 /// An assumed value, a model and its mesh or meshes.
-type Method = (String, ModelKind, Vec<u32>);
+pub(super) type Method = (String, ModelKind, Vec<u32>);
 
 /// The table from these scenes, with the errors against their runs on the finest mesh, or where these are missing on
 /// that of `reference` subdivisions; `None` if no scene has a run on the latter.
@@ -68,8 +67,8 @@ pub(super) fn calibrate(
             let on = |n: u32| Some((n, scene.median(measure, (ModelKind::Film, n))?));
             [FINEST, reference].into_iter().find_map(on)
         };
-        let of = |scene: &&SceneRuns| Scene::of(scene, measure, of_reference(scene)?);
-        let of_measure: Vec<Scene> = scenes.iter().filter_map(of).collect();
+        let of = |scene: &&SceneRuns| Ratios::of(scene, measure, of_reference(scene)?);
+        let of_measure: Vec<Ratios> = scenes.iter().filter_map(of).collect();
         let (of_meshes, changes) = entries(&of_measure, &coordinates);
         errors.insert(measure.name().to_owned(), of_meshes);
         assumed.insert(measure.name().to_owned(), changes);
@@ -118,9 +117,13 @@ fn longest(scenes: &[SceneRuns]) -> Vec<&SceneRuns> {
     longest.into_values().collect()
 }
 
-impl Scene {
+impl Ratios {
     /// The values of a scene over that on its reference mesh, to the finest one; none of that mesh itself.
-    fn of(scene: &SceneRuns, measure: ColumnId, (reference, value): (u32, f64)) -> Option<Self> {
+    pub(super) fn of(
+        scene: &SceneRuns,
+        measure: ColumnId,
+        (reference, value): (u32, f64),
+    ) -> Option<Self> {
         let mut values: BTreeMap<Kind, BTreeMap<u64, f64>> = BTreeMap::new();
         for run in &scene.runs {
             let (assumed, mesh) = (run.assumed(), run.mesh());
@@ -139,7 +142,7 @@ impl Scene {
     }
 
     /// The values of a method, one per run; of two meshes by equal seed.
-    fn of_method(&self, (assumed, model, meshes): &Method, weight: f64) -> Vec<f64> {
+    pub(super) fn of_method(&self, (assumed, model, meshes): &Method, weight: f64) -> Vec<f64> {
         let on = |n: u32| self.values.get(&(assumed.clone(), *model as u8, n));
         match meshes.as_slice() {
             [coarse, fine] => {
@@ -183,7 +186,7 @@ fn first_order((model, n): (ModelKind, u32), reference: u32) -> f64 {
 }
 
 /// The entries of a measure: of models without a mesh, each mesh, each pair of meshes; and of each assumed value.
-fn entries(scenes: &[Scene], coordinates: &Coordinates) -> (Vec<Entry>, BTreeMap<String, Entry>) {
+fn entries(scenes: &[Ratios], coordinates: &Coordinates) -> (Vec<Entry>, BTreeMap<String, Entry>) {
     let kinds: BTreeSet<&Kind> = scenes.iter().flat_map(|scene| scene.values.keys()).collect();
     let film = |kind: &&&Kind| kind.1 == ModelKind::Film as u8;
     let (unchanged, changed): (Vec<&Kind>, Vec<&Kind>) =
@@ -199,7 +202,7 @@ fn entries(scenes: &[Scene], coordinates: &Coordinates) -> (Vec<Entry>, BTreeMap
     }
     let entry = |method: &Method| {
         let weight = weight(scenes, method);
-        let of_scene = |scene: &Scene| {
+        let of_scene = |scene: &Ratios| {
             let values = scene.of_method(method, weight);
             let bias = Spread::of(values.iter().copied())?.median;
             Some(((coordinates.of(&scene.features), bias), values))
@@ -233,13 +236,13 @@ fn entries(scenes: &[Scene], coordinates: &Coordinates) -> (Vec<Entry>, BTreeMap
 }
 
 /// A number to four digits: what more would say is noise.
-fn rounded(number: f64) -> f64 {
+pub(super) fn rounded(number: f64) -> f64 {
     format!("{number:.3e}").parse().unwrap_or(number)
 }
 
 /// The weight w for which m₂ + w (m₂ − m₁) is nearest to the value on the finest mesh, over all scenes; 0 for one
 /// mesh.
-fn weight(scenes: &[Scene], (assumed, model, meshes): &Method) -> f64 {
+fn weight(scenes: &[Ratios], (assumed, model, meshes): &Method) -> f64 {
     let [coarse, fine] = meshes[..] else { return 0.0 };
     let mut product = 0.0;
     let mut square = 0.0;

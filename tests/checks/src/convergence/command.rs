@@ -1,9 +1,9 @@
 //! `billow-checks converge`: to what each measure tends as the mesh is refined, and the table of mesh errors.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use billow_study::accuracy::PROMISED;
+use billow_study::accuracy::{MeshErrors, PROMISED};
 use billow_study::cli::options::ResultsOption;
 use billow_study::cli::results::{self, StudyArgs};
 use billow_study::input::value::Value;
@@ -63,13 +63,18 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         let problem = "no scene has this mesh";
         return Err(Error::invalid_option("--reference", &value, problem, allowed, ""));
     };
-    let text = serde_json::to_value(&table).map(|table| lines(&table, LINE_DEPTH) + "\n");
+    write_table(&table, path, &args.options)
+}
+
+/// Writes the table of mesh errors to a file.
+pub(super) fn write_table(table: &MeshErrors, path: &Path, options: &Options) -> Result<()> {
+    let text = serde_json::to_value(table).map(|table| lines(&table, LINE_DEPTH) + "\n");
     let text = text.unwrap_or_default();
     write_output(&Disk, path, text.as_bytes()).map_err(|error| disk_error(path, &error))?;
     let errors = || table.errors.values().flatten();
     let scenes = errors().map(|entry| entry.scenes).max().unwrap_or(0);
     let (path, count) = (path.display(), errors().count());
-    args.options.note(&format!("{path}: {count} errors, of up to {scenes} scenes"));
+    options.note(&format!("{path}: {count} errors, of up to {scenes} scenes"));
     Ok(())
 }
 

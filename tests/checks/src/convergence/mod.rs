@@ -3,6 +3,8 @@
 mod calibrate;
 pub mod command;
 mod fit;
+pub mod held_back;
+mod lots;
 mod regression;
 mod runs;
 

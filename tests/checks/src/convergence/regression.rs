@@ -32,11 +32,16 @@ pub(super) struct Regression {
 /// The distance that 19 of 20 keep; of a new scene beside these, so that few scenes give a larger one.
 pub(super) fn nineteen_of_twenty(mut distances: Vec<f64>, scenes: usize) -> f64 {
     distances.sort_by(f64::total_cmp);
-    let level = 0.95 * (1.0 + 1.0 / scenes as f64);
-    let rank = libm::ceil(level * distances.len() as f64);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a rank")]
-    let index = (rank as usize).clamp(1, distances.len().max(1)) - 1;
+    let index = rank_of_19_of_20(distances.len(), scenes).max(1) - 1;
     distances.get(index).copied().unwrap_or(0.0)
+}
+
+/// Rank, from the smallest distance on, of the distance that 19 of 20 runs of a new scene keep beside these.
+pub(super) fn rank_of_19_of_20(runs: usize, scenes: usize) -> usize {
+    let level = 0.95 * (1.0 + 1.0 / scenes as f64);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a rank")]
+    let rank = libm::ceil(level * runs as f64) as usize;
+    rank.min(runs)
 }
 
 /// The regression over these scenes; `None` without any.

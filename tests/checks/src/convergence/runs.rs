@@ -110,7 +110,7 @@ pub(super) fn by_scene(all: &[Stored<'_>]) -> Vec<SceneRuns> {
 const NO_SCENE: [&str; 5] = [MESH, MODEL, SEED, "film.loss_factor", "gas.heat_transfer"];
 
 /// Text that is equal for runs of one scene.
-fn key(scene: &Scene) -> String {
+pub(super) fn key(scene: &Scene) -> String {
     let mut scene = scene.clone();
     scene.film.loss_factor = LOSS_FACTOR;
     scene.gas.heat_transfer = HeatTransfer::Coefficient(HEAT_TRANSFER);
