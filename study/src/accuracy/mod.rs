@@ -1,8 +1,9 @@
 //! What is known about the error of a result: the table of mesh errors, and which scenes it covers.
 //!
-//! The table is made by `billow-checks converge --table` from the study mesh-error, its widths by `billow-checks held-back
-//! --table` too, and is part of the program. It has entries of every model; rows carry those of film, `billow plan --accuracy` names them all. No clock and no machine
-//! has a part in it, so a choice that reads it is the same everywhere.
+//! The table is made by `billow-checks converge --table` from the study mesh-error, its widths by `billow-checks
+//! held-back --table` too, and is part of the program. It has entries of every model; rows carry those of film,
+//! `billow plan --accuracy` names them all. No clock and no machine has a part in it, so a choice that reads it is
+//! the same everywhere.
 
 pub mod assumed;
 pub mod choice;
