@@ -236,6 +236,8 @@ mod tests {
     /// all lots: the table promises 19 of 20 runs of such scenes.
     const KEPT: f64 = 0.95;
     const KEPT_OF_MEASURE: f64 = 0.9;
+    /// Scenes of that lot whose value of a measure on a mesh may miss its error: 18 of 20 are asked for.
+    const MISSED: usize = 2;
     /// Certain verdicts that are wrong, at most. Chosen: an error is missed by one value in twenty, and then by little.
     const WRONG: f64 = 2e-3;
 
@@ -256,8 +258,14 @@ mod tests {
         let of_last = || all.iter().filter(|lot| lot.lot > COUNTED);
         let kept: usize = of_last().map(|lot| lot.kept).sum();
         let count: usize = of_last().map(|lot| lot.values.len()).sum();
-        assert!(count >= 400, "{count} values: does the table cover fewer scenes?");
+        assert!(count >= 500, "{count} values: does the table cover fewer scenes?");
         assert!(kept as f64 >= KEPT * count as f64, "{kept} of {count}");
+        for lot in of_last() {
+            let name = format!("{} on n {}", lot.measure.name(), lot.mesh);
+            let missed = lot.values.len() - lot.kept;
+            assert!(missed <= MISSED, "{name}: {missed} of {} missed", lot.values.len());
+            assert!(lot.mesh > JUDGED[0] || lot.wrong[0] == 0, "{name}: safe but missed");
+        }
         let certain: usize = all.iter().map(|lot| lot.certain).sum();
         for side in 0..2 {
             let wrong: usize = all.iter().map(|lot| lot.wrong[side]).sum();
