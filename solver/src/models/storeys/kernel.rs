@@ -19,6 +19,7 @@ use core::f64::consts::PI;
 use super::STRIPS;
 use super::strip::{Strip, StripElement};
 use crate::mechanics::material::{MohrCircle, StressResponse};
+use crate::mechanics::material_loss::Creep;
 use crate::mechanics::tensor::{add, contract, isotropic, scale, subtract};
 use crate::platform::simd::{InstructionSet, Lanes, Wide, dispatch_wide};
 
@@ -89,7 +90,7 @@ fn element_stress<L: Wide>(
     let mut creep_strain = load::<L>(&state.creep);
     let last_driving = subtract(last_stress, isotropic(creep_strain, creep.stiffness));
     let creep_step = scale(isotropic(last_driving, creep.compliance), L::splat(step.creep_share));
-    creep_strain = add(creep_strain, creep_step);
+    creep_strain = Creep::after_step(creep_strain, creep_step);
     let over = scale(subtract(strain, creep_strain), L::splat(creep.ratio));
     let elastic = add(strain, over);
     let circle = MohrCircle::of_difference(elastic[0], elastic[1], elastic[2]);

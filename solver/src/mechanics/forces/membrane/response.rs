@@ -131,7 +131,7 @@ fn strained<L: Wide, const LOSS: bool, const PASS: u8>(
             last_driving = subtract(last_stress, isotropic(creep_strain, creep.stiffness));
             creep_step =
                 scale(isotropic(last_driving, creep.compliance), L::splat(step.creep_share));
-            creep_strain = add(creep_strain, creep_step);
+            creep_strain = Creep::after_step(creep_strain, creep_step);
             store(creep_strain, &mut next_creep.0, *lane);
             weighted_creep = isotropic(creep_strain, creep.stiffness);
         }
