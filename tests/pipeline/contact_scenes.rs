@@ -77,11 +77,15 @@ fn creases_and_yield_need_bending_and_change_the_motion() {
     assert!(volumes.windows(2).all(|pair| pair[0] != pair[1]), "{volumes:?}");
     let sheet_scene = json!({
         "mesh": {"positions": "sheet.obj"}, "film": bending, "creases": length, "contact": {"enabled": false},
-        "solver": {"end_time": "1 ms"},
+        "solver": {"end_time": "1 ms"}, "seed": 1,
     });
     let summary = solved(&sheet_scene, &[("sheet.obj", &sheet(0.0))]);
     let notes = summary["notes"].to_string();
     assert!(notes.contains("creases has no effect: a mesh has no fold lines"), "{notes}");
+    assert!(
+        notes.contains("seed has no effect: a scene displaces a stowed design alone"),
+        "{notes}"
+    );
 }
 
 #[test]

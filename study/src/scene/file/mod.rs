@@ -226,6 +226,9 @@ impl SceneFile {
         mesh::check_closure(&film, &shape.numbering, &reader.source)?;
         contact::check_plates(&film, &reader.source)?;
         notes.extend(without_effect(&film, &settings));
+        if shape.imperfection_amplitude.is_none() && settings.whole("seed", &reader.source)? != 0 {
+            notes.push(SEED_WITHOUT_EFFECT.to_owned());
+        }
         if let Some(mesh) = tree.get("mesh") {
             let has_reference = mesh::has_reference(mesh);
             notes.extend(judge::notes(&film, &shape.numbering, has_reference, &reader.source)?);
@@ -292,6 +295,10 @@ fn seat(shape: &mut Shape, movers: Vec<PrescribedNodes>) {
         }
     }
 }
+
+/// The note where a seed displaces nothing.
+const SEED_WITHOUT_EFFECT: &str = "seed has no effect: a scene displaces a stowed design alone; a study with design.mesh \
+                                   displaces film from a file";
 
 /// Keys that have no effect on this scene.
 fn without_effect(film: &FilmScene, settings: &Settings) -> Vec<String> {
