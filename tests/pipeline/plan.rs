@@ -214,9 +214,16 @@ fn strategies_resolve_to_windows() {
         "strategies.delayed.release_time": [0, 0.1]});
     let generation = plan(&study, &[]);
     assert_eq!(generation.points.len(), 4);
-    let names: Vec<&str> =
-        generation.points[0].job.parameters.iter().map(|(name, _)| name.as_str()).collect();
-    assert!(names.contains(&"strategies.delayed.inflow[0].mass_flow_rate"), "{names:?}");
+    let names = |generation: &Generation| -> Vec<String> {
+        generation.points[0].job.parameters.iter().map(|(name, _)| name.clone()).collect()
+    };
+    let varied = names(&generation);
+    assert!(varied.iter().any(|name| name == "strategies.delayed.inflow[0].mass_flow_rate"));
+    // A list is another axis; inflow windows are a list of their own.
+    for (list, points) in [("preinflation_mass=[0, 1e-4]", 8), ("inflow=[{\"from\": 0}]", 4)] {
+        let generation = plan(&study, &[&format!("strategies.delayed.{list}")]);
+        assert_eq!(generation.points.len(), points, "{list}: {:?}", names(&generation));
+    }
 
     study["grid"] = json!({"strategy": ["preinflate"], "residual_gas": ["stored"]});
     let mass = plan(&study, &[]).points[0].job.scene.gas.initial_mass;

@@ -134,10 +134,13 @@ pub fn has_error(measure: ColumnId) -> bool {
     depends_on_no_mesh(measure) || promise(measure.name()).is_some()
 }
 
+/// How the reason of a model without mesh begins.
+pub const OF_FILM: &str = "the error columns are those of film";
+
 /// Why rows of a model without mesh have no error, though the table knows it.
 fn of_another_model(method: &Method) -> String {
     format!(
-        "the error columns are those of film, not of {}; billow plan STUDY --accuracy names a method that keeps an error",
+        "{OF_FILM}, not of {}; billow plan STUDY --accuracy names a method that keeps an error",
         method.name()
     )
 }

@@ -113,7 +113,8 @@ fn set_key(
     notes: &mut Vec<String>,
 ) -> Result<String, InputError> {
     let key = table.find(name).map(|index| table.keys[index]);
-    let one_value = key.is_some_and(|key| key.varies() && !matches!(key.kind, KeyKind::Vector(_)));
+    let one_value = key.is_some_and(|key| key.varies() && !matches!(key.kind, KeyKind::Vector(_)))
+        || is_of_strategy(name);
     if has_grid && matches!(value, Json::List(_)) {
         let mut is_in = |section| {
             let members = varied(tree, section);
@@ -159,6 +160,13 @@ fn set_key(
     }
     *target = value;
     Ok(path.to_owned())
+}
+
+/// Whether a name is that of a key of a strategy, or of one of its inflow windows, that takes one value.
+fn is_of_strategy(name: &str) -> bool {
+    let leaf = name.strip_prefix("strategies.").and_then(|rest| rest.rsplit_once('.'));
+    let keys = || keys::STRATEGY_KEYS.iter().chain(keys::WINDOW_KEYS);
+    leaf.is_some_and(|(_, leaf)| keys().any(|key| key.path == leaf && key.varies()))
 }
 
 /// Whether two names stand for one key.

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use crate::accuracy::row::OF_CAPSULES;
+use crate::accuracy::row::{OF_CAPSULES, OF_FILM};
 use crate::accuracy::{MeshErrors, NO_ERROR_REASON, is_of_pilots, is_unknown};
 use crate::analysis::replicates::is_mesh;
 use crate::input::value::Value;
@@ -111,6 +111,8 @@ pub fn mesh_errors(shown: Option<&str>, table: &Table, meshes: &Meshes) -> Vec<S
             "− and + are {} times the largest change from mesh to mesh, taken to the limit as 1/n (grid convergence index)",
             INDEX_FACTORS[usize::from(on_all > 2)]
         ),
+        // Its reason says what to do.
+        _ if gap.starts_with(OF_FILM) => format!("rows without − and + have no known error (no_error_reason): {gap}"),
         0 => format!("rows without − and + have no known error (no_error_reason): {gap}; {three} gives one"),
         2 => format!("rows that the table does not cover (no_error_reason) have no error; {three} gives one"),
         _ => "rows that the table does not cover (no_error_reason): − and + are 3 times the change of the extrapolated value \

@@ -55,6 +55,10 @@ pub fn assumptions(points: &[Point], ranges: &AssumedRanges) -> Vec<String> {
     let friction = or(&friction, "no friction", format!("friction {friction}"));
     texts.extend(used("contact.friction", friction));
     texts.push("uniform gas pressure".to_owned());
+    // Whether a capsule locks then depends on what the model lacks.
+    let opens = "film bears no compression: it opens if gas and time suffice".to_owned();
+    let all = scenes.iter().all(|scene| scene.film.compression == 0.0);
+    texts.extend(used("film.compression", opens).filter(|_| all));
     texts
 }
 
@@ -117,7 +121,8 @@ mod tests {
         assert_eq!(
             of("{}"),
             "vacuum; no gravity; no floor; stack 40 mm high, 15.12 litres; film loss 0.015 (assumed: 0.003 to 0.03); \
-             heat transfer 0.3 W/(m² K) (assumed: 0.1 to 1); no friction; uniform gas pressure"
+             heat transfer 0.3 W/(m² K) (assumed: 0.1 to 1); no friction; uniform gas pressure; \
+             film bears no compression: it opens if gas and time suffice"
         );
         // 0.1 g of nitrogen at 293 K, m R T/V; a capsule of 10 mm does not fold.
         assert_eq!(
@@ -126,7 +131,8 @@ mod tests {
                 "friction": [0.2], "height": [1, 0.01]}"#
             ),
             "vacuum; gravity -1.62 m/s²; no floor; stack 40 mm high, 15.12 litres; 0 to 575.3 Pa in it before the \
-             release; film loss 0.003 to 0.02; heat transfer 0.3 W/(m² K) (assumed: 0.1 to 1); friction 0.2; uniform gas pressure"
+             release; film loss 0.003 to 0.02; heat transfer 0.3 W/(m² K) (assumed: 0.1 to 1); friction 0.2; uniform gas pressure; \
+             film bears no compression: it opens if gas and time suffice"
         );
         let piston =
             of(r#"{"model": ["piston"], "ambient_pressure": [10], "residual_gas": ["ambient"]}"#);

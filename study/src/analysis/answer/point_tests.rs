@@ -82,6 +82,9 @@ fn a_point_counts_as_deployed_or_safe_if_all_its_runs_are() {
     let nearest = safety.nearest.unwrap();
     assert_eq!(nearest.run.parameters[0].1, Value::Text("late".to_owned()));
     assert!((nearest.run.value - (25.0 - 20.02) / 25.0).abs() < 1e-12);
+    let farthest = safety.farthest.unwrap();
+    assert_eq!(farthest.run.parameters[0].1, Value::Text("rapid".to_owned()));
+    assert!((farthest.run.value - (25.0 - 10.01) / 25.0).abs() < 1e-12);
 }
 
 #[test]

@@ -21,6 +21,8 @@ pub struct Safety {
     /// The run with the smallest margin of the safe point nearest to a limit; without one of the point that misses its
     /// limits least.
     pub nearest: Option<Nearest>,
+    /// The same of the safe point farthest from its limits; `None` with less than two.
+    pub farthest: Option<Nearest>,
     /// For each missed limit its measure and the number of points that miss it, the most frequent first.
     #[serde(serialize_with = "named")]
     pub missed: Vec<(String, usize)>,
@@ -87,12 +89,14 @@ impl Safety {
         uncertain_by.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
         let safe = |point: &usize| points.safety(*point) == Some(Safe);
         let margins =
-            all.iter().copied().filter(safe).filter_map(|p| margin(table, limits, &points, p));
-        let nearest = margins.reduce(|a, b| if b.run.value < a.run.value { b } else { a });
+            || all.iter().copied().filter(safe).filter_map(|p| margin(table, limits, &points, p));
+        let nearest = margins().reduce(|a, b| if b.run.value < a.run.value { b } else { a });
+        let farthest = margins().reduce(|a, b| if b.run.value > a.run.value { b } else { a });
         Some(Self {
             limits: limits.iter().map(ToString::to_string).collect(),
             counts: SafeCounts::of(&points, &all),
             nearest: nearest.or_else(|| safest(table, limits, &points, &all)),
+            farthest: farthest.filter(|_| margins().count() > 1),
             missed,
             uncertain_by,
         })

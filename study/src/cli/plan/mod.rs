@@ -50,7 +50,8 @@ pub struct Args {
     units: UnitsOption,
     #[command(flatten)]
     set: SetOption,
-    /// Name the cheapest model and mesh that keep this relative error of every measure but `peak_vz`, as in "5 %".
+    /// Name the cheapest model and mesh that keep this relative error of times, kinetic energy and the final state, as in
+    /// "5 %"; other measures scatter more from seed to seed.
     #[arg(long, value_name = "ERROR")]
     accuracy: Option<String>,
     #[command(flatten)]

@@ -86,7 +86,7 @@ pub(crate) const STRUCTURED: &[(&str, &str)] = &[
     ),
     (
         "limits",
-        "What a result must meet to be safe, as in {\"peak_vz\": \"< 25 m/s\", \"verdict\": \"deployed\"}: columns of the \
+        "What a result must meet to be safe, as in {\"peak_speed\": \"< 25 m/s\", \"verdict\": \"deployed\"}: columns of the \
          table with <, <=, > or >= and a quantity, a verdict, true or false. They change no job.",
     ),
     (

@@ -105,6 +105,10 @@ pub(super) fn safe(safety: &Safety) -> String {
         let (limit, job) = (at_limit(&nearest.limit, nearest.seeds), job_text(&nearest.run));
         let _ = write!(all, "; {what}: {limit}, at {job}");
     }
+    if let Some(farthest) = &safety.farthest {
+        let (limit, job) = (at_limit(&farthest.limit, farthest.seeds), job_text(&farthest.run));
+        let _ = write!(all, "; farthest from a limit: {limit}, at {job}");
+    }
     all
 }
 
