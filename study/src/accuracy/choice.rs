@@ -14,8 +14,9 @@ use billow_solver::scene::{ModelKind, Scene, Stepping};
 
 use super::entry::Method;
 use super::features::{FEATURES, Features, STEP};
-use super::promised::PROMISED;
+use super::promised::{PROMISED, Promised};
 use super::table::MeshErrors;
+use crate::job::result_limit::ResultLimit;
 
 /// Subdivisions of the mesh whose run costs 1.
 const COST_MESH: f64 = 24.0;
@@ -40,25 +41,29 @@ pub struct Choice {
 impl Choice {
     /// Whether its model can compute the scenes, with no error above this one.
     pub fn keeps(&self, accuracy: f64) -> bool {
-        self.refusal.is_none() && self.asked().all(|(_, error)| error <= accuracy)
+        self.refusal.is_none() && self.asked().all(|error| error <= accuracy)
     }
 
-    /// The measures for which an accuracy is asked, and their errors.
-    pub fn asked(&self) -> impl Iterator<Item = (&'static str, f64)> {
+    /// The errors of the measures for which an accuracy is asked.
+    pub fn asked(&self) -> impl Iterator<Item = f64> {
         let pairs = PROMISED.iter().zip(self.errors).filter(|(promised, _)| promised.is_asked);
-        pairs.map(|(promised, error)| (promised.measure.name(), error))
+        pairs.map(|(_, error)| error)
     }
 
-    /// These errors as a text, as in `t_90_z_rim 5.5 %`.
-    pub fn errors_text(&self) -> String {
-        let text = |(name, error): (&str, f64)| {
+    /// These errors, and those of limited measures, as a text, as in `t_90_z_rim 5.5 %`.
+    pub fn errors_text(&self, limits: &[ResultLimit]) -> String {
+        let shown = PROMISED.iter().zip(self.errors).filter(|(promised, _)| {
+            promised.is_asked || limits.iter().any(|limit| limit.measure == promised.measure)
+        });
+        let text = |(promised, error): (&Promised, f64)| {
+            let name = promised.measure.name();
             if error.is_finite() {
                 format!("{name} {:.1} %", 100.0 * error)
             } else {
                 format!("{name} not known")
             }
         };
-        self.asked().map(text).collect::<Vec<_>>().join(", ")
+        shown.map(text).collect::<Vec<_>>().join(", ")
     }
 }
 

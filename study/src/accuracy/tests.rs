@@ -299,7 +299,7 @@ fn the_models_without_mesh_stand_beside_the_meshes_the_cheapest_first() {
         let models: Vec<ModelKind> = choices.iter().map(|choice| choice.method.model).collect();
         assert_eq!(models[..3], [ModelKind::Piston, ModelKind::Storeys, ModelKind::Film]);
         assert!(choices.iter().all(|choice| choice.refusal.is_none()));
-        assert!(choices[..2].iter().all(|choice| choice.asked().all(|(_, e)| e.is_finite())));
+        assert!(choices[..2].iter().all(|choice| choice.asked().all(f64::is_finite)));
         let t_90 = |index: usize| choices[index].errors[1];
         assert!((1..choices.len()).all(|index| t_90(0) > t_90(index)), "{choices:?}");
     }

@@ -166,7 +166,7 @@ fn set_key(
 fn is_of_strategy(name: &str) -> bool {
     let leaf = name.strip_prefix("strategies.").and_then(|rest| rest.rsplit_once('.'));
     let keys = || keys::STRATEGY_KEYS.iter().chain(keys::WINDOW_KEYS);
-    leaf.is_some_and(|(_, leaf)| keys().any(|key| key.path == leaf && key.varies()))
+    leaf.is_some_and(|(_, leaf)| keys().any(|key| key.path == leaf))
 }
 
 /// Whether two names stand for one key.

@@ -7,7 +7,7 @@ use billow_solver::integrators::{self, Refusal};
 use billow_solver::scene::{Film, ModelKind, Scene};
 
 use super::legend::three_meshes;
-use crate::accuracy::row::{OF_CAPSULES, has_error};
+use crate::accuracy::row::{OF_CAPSULES, OF_FILM, has_error};
 use crate::accuracy::{Features, MeshErrors, Method, PROMISED, choice};
 use crate::analysis::answer::samples_needed;
 use crate::input::keys::numerical::{MESH_PARAMETER, SEED};
@@ -164,7 +164,7 @@ fn of_meshes(study: &Study) -> Option<String> {
     Some(match choice(MeshErrors::shipped(), method, &scenes) {
         Ok(choice) => format!(
             "note: solver.meshes gives the errors of {name}: {}; cost {:.1} % of n 24",
-            choice.errors_text(),
+            choice.errors_text(study.result_limits()),
             100.0 * choice.cost
         ),
         Err(gap) if meshes.list.len() == 2 => {
@@ -181,7 +181,7 @@ fn without_error(study: &Study) -> Option<String> {
         let method = Method::of(scene);
         match method.model {
             ModelKind::Film => table.gap(scene, &features),
-            _ => Some(format!("the error columns are those of film, not of {}", method.name())),
+            _ => Some(format!("{OF_FILM}, not of {}", method.name())),
         }
     };
     let meshes = study.meshes();

@@ -23,7 +23,7 @@ pub fn assumptions(points: &[Point], ranges: &AssumedRanges) -> Vec<String> {
         let reads = |scene: &&Scene| !keys::model(scene.solver.model).ignores.contains(&key);
         scenes.iter().any(reads).then_some(text)
     };
-    let (Some(ambient), Some(gravity), Some(loss), Some(heat), Some(friction)) = (
+    let (Some(ambient), Some(gravity), Some(loss), Some(heat), Some(friction), Some(compression)) = (
         range(|scene| scene.gas.ambient_pressure),
         range(|scene| scene.gravity),
         range(|scene| scene.film.loss_factor),
@@ -32,6 +32,7 @@ pub fn assumptions(points: &[Point], ranges: &AssumedRanges) -> Vec<String> {
             HeatTransfer::Isothermal => f64::INFINITY,
         }),
         range(|scene| scene.contact.friction),
+        range(|scene| scene.film.compression),
     ) else {
         return Vec::new();
     };
@@ -55,10 +56,9 @@ pub fn assumptions(points: &[Point], ranges: &AssumedRanges) -> Vec<String> {
     let friction = or(&friction, "no friction", format!("friction {friction}"));
     texts.extend(used("contact.friction", friction));
     texts.push("uniform gas pressure".to_owned());
-    // Whether a capsule locks then depends on what the model lacks.
-    let opens = "film bears no compression: it opens if gas and time suffice".to_owned();
-    let all = scenes.iter().all(|scene| scene.film.compression == 0.0);
-    texts.extend(used("film.compression", opens).filter(|_| all));
+    let carried = format!("compression fraction {compression}");
+    let compression = or(&compression, "film bears no compression", carried);
+    texts.extend(used("film.compression", compression));
     texts
 }
 
@@ -121,23 +121,24 @@ mod tests {
         assert_eq!(
             of("{}"),
             "vacuum; no gravity; no floor; stack 40 mm high, 15.12 litres; film loss 0.015 (assumed: 0.003 to 0.03); \
-             heat transfer 0.3 W/(m² K) (assumed: 0.1 to 1); no friction; uniform gas pressure; \
-             film bears no compression: it opens if gas and time suffice"
+             heat transfer 0.3 W/(m² K) (assumed: 0.1 to 1); no friction; uniform gas pressure; film bears \
+             no compression"
         );
         // 0.1 g of nitrogen at 293 K, m R T/V; a capsule of 10 mm does not fold.
         assert_eq!(
             of(
                 r#"{"film.loss_factor": [0.003, 0.02], "residual_gas_mass": [0, "0.1 g"], "gravity": [-1.62],
-                "friction": [0.2], "height": [1, 0.01]}"#
+                "friction": [0.2], "compression": [0, 0.1], "height": [1, 0.01]}"#
             ),
             "vacuum; gravity -1.62 m/s²; no floor; stack 40 mm high, 15.12 litres; 0 to 575.3 Pa in it before the \
              release; film loss 0.003 to 0.02; heat transfer 0.3 W/(m² K) (assumed: 0.1 to 1); friction 0.2; uniform gas pressure; \
-             film bears no compression: it opens if gas and time suffice"
+             compression fraction 0 to 0.1"
         );
         let piston =
             of(r#"{"model": ["piston"], "ambient_pressure": [10], "residual_gas": ["ambient"]}"#);
         assert!(piston.starts_with("ambient pressure 10 Pa; no gravity"), "{piston}");
         assert!(piston.contains("; 10 Pa in it") && !piston.contains("loss"), "{piston}");
+        assert!(!piston.contains("compression"), "{piston}");
         assert_eq!(of(r#"{"height": [0.01]}"#), "");
         // 0.5 g before the release.
         let held = of(r#"{"strategy": ["held"]}"#);

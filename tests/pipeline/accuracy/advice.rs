@@ -19,6 +19,11 @@ fn advice_names_the_cheapest_method_that_keeps_an_accuracy() {
     assert!(text.contains("advice: film, n ") && text.contains("cheaper than now"), "{text}");
     assert!(text.contains("keeps 15 % of times, energy and final state"), "{text}");
     assert!(text.contains("\"meshes\": [") && text.contains("at solver.cfl 0.45"), "{text}");
+    assert!(!text.contains("peak_speed"), "{text}");
+    let limits = json!({"peak_speed": "< 20 m/s"});
+    let limited = film(&json!({"design": {"subdivisions": 16}, "limits": limits}));
+    let text = advice(&limited, &["--accuracy", "15 %"]);
+    assert!(text.contains("in 19 of 20 runs (") && text.contains(", peak_speed "), "{text}");
     let text = advice(&study, &["--accuracy", "25 %"]);
     assert!(text.contains("\"subdivisions\": "), "{text}");
     assert!(advice(&study, &["--accuracy", "1e-6"]).contains("advice: none: no method keeps"));

@@ -61,12 +61,12 @@ macro_rules! select {
             {
                 #[target_feature(enable = "avx2")]
                 fn avx2($($arg: $ty),*) $(-> $ret)? {
-                    $crate::platform::simd::align_frame();
+                    $crate::platform::simd::x86::align_frame();
                     $($avx2)+($($arg),*)
                 }
                 #[target_feature(enable = "avx512f,avx512dq")]
                 fn avx512($($arg: $ty),*) $(-> $ret)? {
-                    $crate::platform::simd::align_frame();
+                    $crate::platform::simd::x86::align_frame();
                     $($avx512)+($($arg),*)
                 }
                 use $crate::platform::simd::InstructionSet;
@@ -89,10 +89,3 @@ macro_rules! select {
     };
 }
 pub(crate) use select;
-
-/// Aligns the stack of the function that it is inlined into to 64 bytes, for the registers that the compiler stores there.
-/// Where no local needs the alignment, it decides on the frame before it knows of them, and stores them across cache lines.
-#[inline(always)]
-pub(crate) fn align_frame() {
-    core::hint::black_box(&mut super::Lanes::default());
-}

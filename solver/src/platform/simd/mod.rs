@@ -23,7 +23,7 @@ pub(crate) mod x86;
 
 pub use column::Column;
 pub use corners::{Columns, Corners, NodeSum, nodes_of, vectors_at};
-pub(crate) use dispatch::{align_frame, dispatch, dispatch_parts, dispatch_wide, select};
+pub(crate) use dispatch::{dispatch, dispatch_parts, dispatch_wide, select};
 pub use lanes::Lanes;
 pub use vectors::Vectors;
 

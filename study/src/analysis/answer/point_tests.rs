@@ -88,6 +88,15 @@ fn a_point_counts_as_deployed_or_safe_if_all_its_runs_are() {
 }
 
 #[test]
+fn one_safe_point_alone_is_the_nearest_and_not_the_farthest() {
+    let limits = limits(15.0);
+    let table = with_error(table(&runs()), "peak_vz", 0.0).judged(&limits);
+    let safety = Safety::of(&table, &limits, &all(&table), &["seed".to_owned()]).unwrap();
+    assert_eq!(safety.counts.safe, 1);
+    assert!(safety.nearest.is_some() && safety.farthest.is_none());
+}
+
+#[test]
 fn a_run_that_cannot_be_trusted_leaves_the_median_to_the_others() {
     let mut table = table(&runs());
     table.columns[8].cells[0] = Value::Bool(true);

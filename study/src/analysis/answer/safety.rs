@@ -21,7 +21,7 @@ pub struct Safety {
     /// The run with the smallest margin of the safe point nearest to a limit; without one of the point that misses its
     /// limits least.
     pub nearest: Option<Nearest>,
-    /// The same of the safe point farthest from its limits; `None` with less than two.
+    /// The same of the safe point farthest from its limits; `None` where no safe point is farther than the nearest.
     pub farthest: Option<Nearest>,
     /// For each missed limit its measure and the number of points that miss it, the most frequent first.
     #[serde(serialize_with = "named")]
@@ -31,7 +31,7 @@ pub struct Safety {
     pub uncertain_by: Vec<(String, usize)>,
 }
 
-/// A run near a limit. The value of `run` is the margin.
+/// The smallest margin of a point. The value of `run` is the margin.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Nearest {
     /// The run.
@@ -88,15 +88,22 @@ impl Safety {
         }
         uncertain_by.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
         let safe = |point: &usize| points.safety(*point) == Some(Safe);
-        let margins =
-            || all.iter().copied().filter(safe).filter_map(|p| margin(table, limits, &points, p));
-        let nearest = margins().reduce(|a, b| if b.run.value < a.run.value { b } else { a });
-        let farthest = margins().reduce(|a, b| if b.run.value > a.run.value { b } else { a });
+        let margins: Vec<Nearest> = all
+            .iter()
+            .copied()
+            .filter(safe)
+            .filter_map(|point| margin(table, limits, &points, point))
+            .collect();
+        let by_margin = |a: &&Nearest, b: &&Nearest| a.run.value.total_cmp(&b.run.value);
+        let nearest = margins.iter().min_by(by_margin).cloned();
+        let is_farther =
+            |far: &&Nearest| nearest.as_ref().is_some_and(|near| far.run.value > near.run.value);
+        let farthest = margins.iter().max_by(by_margin).filter(is_farther).cloned();
         Some(Self {
             limits: limits.iter().map(ToString::to_string).collect(),
             counts: SafeCounts::of(&points, &all),
             nearest: nearest.or_else(|| safest(table, limits, &points, &all)),
-            farthest: farthest.filter(|_| margins().count() > 1),
+            farthest,
             missed,
             uncertain_by,
         })

@@ -56,10 +56,14 @@ fn recommendation(study: &Study, choices: &[Choice], error: f64) -> String {
     let asked = format!("{} % of times, energy and final state", brief_number(100.0 * error));
     let Some(choice) = choices.iter().find(|choice| choice.keeps(error)) else {
         let possible = choices.iter().filter(|choice| choice.refusal.is_none());
-        let largest = |choice: &Choice| choice.asked().map(|(_, error)| error).fold(0.0, f64::max);
+        let largest = |choice: &Choice| choice.asked().fold(0.0, f64::max);
         let best = possible.min_by(|a, b| largest(a).total_cmp(&largest(b)));
         let best = best.map_or_else(String::new, |best| {
-            format!("; {} has the smallest errors: {}", best.method.name(), best.errors_text())
+            format!(
+                "; {} has the smallest errors: {}",
+                best.method.name(),
+                best.errors_text(study.result_limits())
+            )
         });
         return format!("advice: none: no method keeps {asked}{best}");
     };
@@ -72,7 +76,7 @@ fn recommendation(study: &Study, choices: &[Choice], error: f64) -> String {
     format!(
         "advice: {} keeps {asked} in 19 of 20 runs ({}; {}): {}; at solver.cfl {STEP} alone{locks}",
         method.name(),
-        choice.errors_text(),
+        choice.errors_text(study.result_limits()),
         saving(study, choice.cost),
         setting(method, study),
     )

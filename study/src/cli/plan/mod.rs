@@ -50,8 +50,8 @@ pub struct Args {
     units: UnitsOption,
     #[command(flatten)]
     set: SetOption,
-    /// Name the cheapest model and mesh that keep this relative error of times, kinetic energy and the final state, as in
-    /// "5 %"; other measures scatter more from seed to seed.
+    /// Name the cheapest model and mesh that keep this relative error of `t_50_z_rim`, `t_90_z_rim`, `peak_kinetic_energy`,
+    /// `final_z_rim` and `final_volume`, as in "5 %".
     #[arg(long, value_name = "ERROR")]
     accuracy: Option<String>,
     #[command(flatten)]

@@ -80,7 +80,7 @@ pub(super) fn sensitivity(found: &VerdictSensitivity) -> String {
     )
 }
 
-/// The safe points, and the one nearest to a limit.
+/// The safe points, and those nearest to and farthest from their limits.
 pub(super) fn safe(safety: &Safety) -> String {
     let mut all = format!("{} ({})", counts(&safety.counts, "point"), safety.limits.join(", "));
     if !safety.missed.is_empty() {
@@ -107,7 +107,7 @@ pub(super) fn safe(safety: &Safety) -> String {
     }
     if let Some(farthest) = &safety.farthest {
         let (limit, job) = (at_limit(&farthest.limit, farthest.seeds), job_text(&farthest.run));
-        let _ = write!(all, "; farthest from a limit: {limit}, at {job}");
+        let _ = write!(all, "; the safe point farthest from its limits: {limit}, at {job}");
     }
     all
 }

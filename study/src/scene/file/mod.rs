@@ -225,10 +225,8 @@ impl SceneFile {
         memory::check_outputs(&film, &reader.source)?;
         mesh::check_closure(&film, &shape.numbering, &reader.source)?;
         contact::check_plates(&film, &reader.source)?;
-        notes.extend(without_effect(&film, &settings));
-        if shape.imperfection_amplitude.is_none() && settings.whole("seed", &reader.source)? != 0 {
-            notes.push(SEED_WITHOUT_EFFECT.to_owned());
-        }
+        let displaced = shape.imperfection_amplitude.is_some();
+        notes.extend(without_effect(&film, displaced, &settings));
         if let Some(mesh) = tree.get("mesh") {
             let has_reference = mesh::has_reference(mesh);
             notes.extend(judge::notes(&film, &shape.numbering, has_reference, &reader.source)?);
@@ -296,12 +294,8 @@ fn seat(shape: &mut Shape, movers: Vec<PrescribedNodes>) {
     }
 }
 
-/// The note where a seed displaces nothing.
-const SEED_WITHOUT_EFFECT: &str = "seed has no effect: a scene displaces a stowed design alone; a study with design.mesh \
-                                   displaces film from a file";
-
-/// Keys that have no effect on this scene.
-fn without_effect(film: &FilmScene, settings: &Settings) -> Vec<String> {
+/// Keys that have no effect on this scene; `displaced`: whether it has an imperfection.
+fn without_effect(film: &FilmScene, displaced: bool, settings: &Settings) -> Vec<String> {
     let mut notes = Vec::new();
     let statics = film.solver.statics;
     if statics && settings.number("solver.end_time").is_some() {
@@ -317,6 +311,11 @@ fn without_effect(film: &FilmScene, settings: &Settings) -> Vec<String> {
     }
     if film.film.creases.is_some() && film.shell.folds.is_empty() {
         notes.push("creases has no effect: a mesh has no fold lines".to_owned());
+    }
+    for key in ["seed", "imperfection_amplitude"] {
+        if !displaced && settings.number(key).is_some_and(|value| value > 0.0) {
+            notes.push(format!("{key} has no effect: a scene displaces a stowed design alone"));
+        }
     }
     notes
 }
