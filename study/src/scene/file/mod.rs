@@ -313,7 +313,7 @@ fn without_effect(film: &FilmScene, displaced: bool, settings: &Settings) -> Vec
         notes.push("creases has no effect: a mesh has no fold lines".to_owned());
     }
     for key in ["seed", "imperfection_amplitude"] {
-        if !displaced && settings.number(key).is_some_and(|value| value > 0.0) {
+        if !displaced && settings.value(key).any_number().is_some_and(|value| value > 0.0) {
             notes.push(format!("{key} has no effect: a scene displaces a stowed design alone"));
         }
     }
