@@ -111,9 +111,11 @@ pub fn mesh_errors(shown: Option<&str>, table: &Table, meshes: &Meshes) -> Vec<S
             "− and + are {} times the largest change from mesh to mesh, taken to the limit as 1/n (grid convergence index)",
             INDEX_FACTORS[usize::from(on_all > 2)]
         ),
-        // Its reason says what to do.
-        _ if gap.starts_with(OF_FILM) => format!("rows without − and + have no known error (no_error_reason): {gap}"),
-        0 => format!("rows without − and + have no known error (no_error_reason): {gap}; {three} gives one"),
+        0 => {
+            // That of another model says what to do.
+            let remedy = if gap.starts_with(OF_FILM) { String::new() } else { format!("; {three} gives one") };
+            format!("rows without − and + have no known error (no_error_reason): {gap}{remedy}")
+        }
         2 => format!("rows that the table does not cover (no_error_reason) have no error; {three} gives one"),
         _ => "rows that the table does not cover (no_error_reason): − and + are 3 times the change of the extrapolated value \
               from the two coarsest meshes to the two finest, or the error in the middle of the table where that is larger"

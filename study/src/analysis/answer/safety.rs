@@ -88,17 +88,12 @@ impl Safety {
         }
         uncertain_by.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
         let safe = |point: &usize| points.safety(*point) == Some(Safe);
-        let margins: Vec<Nearest> = all
-            .iter()
-            .copied()
-            .filter(safe)
-            .filter_map(|point| margin(table, limits, &points, point))
-            .collect();
-        let by_margin = |a: &&Nearest, b: &&Nearest| a.run.value.total_cmp(&b.run.value);
-        let nearest = margins.iter().min_by(by_margin).cloned();
+        let safe: Vec<usize> = all.iter().copied().filter(safe).collect();
+        let margins = safe.iter().filter_map(|point| margin(table, limits, &points, *point));
+        let nearest = margins.reduce(|a, b| if b.run.value < a.run.value { b } else { a });
         let is_farther =
-            |far: &&Nearest| nearest.as_ref().is_some_and(|near| far.run.value > near.run.value);
-        let farthest = margins.iter().max_by(by_margin).filter(is_farther).cloned();
+            |far: &Nearest| nearest.as_ref().is_some_and(|near| far.run.value > near.run.value);
+        let farthest = safest(table, limits, &points, &safe).filter(is_farther);
         Some(Self {
             limits: limits.iter().map(ToString::to_string).collect(),
             counts: SafeCounts::of(&points, &all),

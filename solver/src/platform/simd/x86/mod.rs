@@ -368,12 +368,12 @@ impl Wide for Avx512 {
     }
 }
 
-#[cfg(test)]
-mod tests;
-
 /// Aligns the stack of the function that it is inlined into to 64 bytes, for the registers that the compiler stores there.
 /// Where no local needs the alignment, it decides on the frame before it knows of them, and stores them across cache lines.
 #[inline(always)]
 pub(crate) fn align_frame() {
     core::hint::black_box(&mut super::Lanes::default());
 }
+
+#[cfg(test)]
+mod tests;
