@@ -1,4 +1,4 @@
-//! The paper's capsule as film without contact: conservation, and its static states.
+//! The paper's capsule as film: conservation, its static states, and audits of film that sticks.
 
 use billow_solver::models::film::{self, static_states};
 use billow_solver::scene::paper;
@@ -55,6 +55,17 @@ fn every_ledger_entry_takes_part_in_the_balance() {
     let deployment = run(&scene, DEFAULT_CFL);
     assert!(deployment.audit.ledger_residual < 5e-3, "{:?}", deployment.audit);
     assert!(deployment.audit.gas_residual < 1e-12, "{:?}", deployment.audit);
+}
+
+/// Its nodes pass every gap of the range of adhesion, also the ends, where the force sets in.
+#[test]
+fn film_that_sticks_passes_its_audits() {
+    let mut scene = paper::empty_capsule(4, 0.03);
+    scene.gas.initial_mass = 5e-5;
+    let contact = Some(FilmContact { adhesion: 32e3, ..FilmContact::default() });
+    let set = InstructionSet::detect();
+    let deployment = film::solve(set, &scene, DEFAULT_CFL, contact, &mut Unobserved).unwrap();
+    assert_eq!(deployment.stop, Stop::Done);
 }
 
 #[test]
