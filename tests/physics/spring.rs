@@ -37,7 +37,7 @@ impl Spring {
 
     /// Vector from the first node to the second (m).
     fn between(&self, positions: &Field) -> Vector3<f64> {
-        let [a, b] = self.nodes.map(|node| positions.get(node as usize));
+        let [a, b] = positions.at(self.nodes);
         b - a
     }
 }

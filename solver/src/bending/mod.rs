@@ -231,7 +231,7 @@ impl EnergyTerm for Bending {
         let mut turns = Vec::with_capacity(self.hinges.len());
         for (hinge, (nodes, patch)) in self.hinges.nodes.iter().zip(stiffness.patches).enumerate() {
             let gradient = Hinges::gradient(blocks, hinge);
-            let moves = nodes.map(|node| displacements.get(node as usize));
+            let moves = displacements.at(*nodes);
             let turn: f64 = moves.iter().zip(gradient).map(|(u, slope)| slope.dot(u)).sum();
             // The patch without its bound is m ∂²u/∂x².
             let along = SVector::<f64, 12>::from_fn(|row, _| moves[row / 3][row % 3]);

@@ -55,6 +55,18 @@ impl Field {
         Vector3::new(self.x[index], self.y[index], self.z[index])
     }
 
+    /// The vectors of some nodes.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "inside loops over faces and pairs")]
+    pub fn at<const N: usize>(&self, nodes: [u32; N]) -> [Vector3<f64>; N] {
+        // A plain loop: `array::map` is not always inlined.
+        let mut vectors = [Vector3::zeros(); N];
+        for (vector, node) in vectors.iter_mut().zip(nodes) {
+            *vector = self.get(node as usize);
+        }
+        vectors
+    }
+
     /// Sets vector `index`.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "inside the element loop")]

@@ -12,7 +12,6 @@
 
 use super::virtual_displacement::displacement;
 use crate::collision::contact::distance::Closest;
-use crate::collision::contact::pair::vectors_of;
 use crate::collision::contact::{Contact, ContactModel};
 use crate::mechanics::forces::membrane::NodeForces;
 use crate::output::outcome::{AuditKind, Failure};
@@ -84,7 +83,7 @@ fn of_energies(model: &ContactModel, system: &FilmSystem, state: &FilmState) -> 
     for contact in &state.contact.contacts {
         let nodes = contact.pair.nodes(&model.mesh.topology);
         let Closest { weights, between, squared } =
-            contact.pair.closest(&vectors_of(&state.positions, nodes));
+            contact.pair.closest(&state.positions.at(nodes));
         let gap = squared.sqrt();
         let force = force_of(contact, gap, model.adhesion.range);
         if force != 0.0 {

@@ -64,8 +64,8 @@ pub(super) fn check(
     set_virtual_displacements(system, positions, moves);
     let (mut volume, mut size, mut growth) = (0.0, 0.0, 0.0);
     for face in model.triangles.iter().chain(&model.closure) {
-        let [a, b, c] = face.map(|node| positions.get(node as usize));
-        let [u, v, w] = face.map(|node| moves.get(node as usize));
+        let [a, b, c] = positions.at(*face);
+        let [u, v, w] = moves.at(*face);
         let (normal, part) = (b.cross(&c), a.dot(&b.cross(&c)) / 6.0);
         volume += part;
         size += part.abs();

@@ -161,7 +161,7 @@ impl ClosureNodes {
             return parts;
         }
         for face in &self.wall_faces {
-            let [a, b, c] = face.map(|node| positions.get(node as usize));
+            let [a, b, c] = positions.at(*face);
             let normal = (b - a).cross(&(c - a));
             for node in face {
                 *parts.entry(*node).or_insert_with(Vector3::zeros) += normal;

@@ -10,7 +10,7 @@ use super::candidates::{CandidateList, FeatureHit};
 use super::distance::Closest;
 use super::force_law::Contact;
 use super::model::ContactModel;
-use super::pair::{CandidatePair, Pair, PairKind, vectors_of};
+use super::pair::{CandidatePair, Pair, PairKind};
 use crate::geometry::field::Field;
 use crate::geometry::topology::Feature;
 
@@ -156,7 +156,7 @@ impl ContactModel {
                 continue;
             }
             let pair = candidate.pair;
-            let closest = pair.closest(&vectors_of(positions, pair.nodes(topology)));
+            let closest = pair.closest(&positions.at(pair.nodes(topology)));
             if closest.squared < squared_range {
                 let [_, a, b, c] = closest.weights;
                 let feature = topology.feature(pair.second, [a, b, c]);
@@ -180,7 +180,7 @@ impl ContactModel {
             return;
         }
         let pair = candidate.pair;
-        let closest = pair.closest(&vectors_of(update.positions, pair.nodes(&self.mesh.topology)));
+        let closest = pair.closest(&update.positions.at(pair.nodes(&self.mesh.topology)));
         let inside = closest.weights.iter().all(|weight| *weight != 0.0);
         if !inside {
             return;
@@ -224,8 +224,7 @@ impl ContactModel {
     fn add_contact_forces(&self, positions: &Field, forces: &mut Field, contacts: &mut [Contact]) {
         for contact in contacts {
             let nodes = contact.pair.nodes(&self.mesh.topology);
-            let Closest { weights, between, squared } =
-                contact.pair.closest(&vectors_of(positions, nodes));
+            let Closest { weights, between, squared } = contact.pair.closest(&positions.at(nodes));
             let gap = squared.sqrt();
             contact.energy = 0.0;
             let magnitude =

@@ -7,7 +7,7 @@
 #![allow(clippy::inline_always, reason = "inside the loop over pairs")]
 
 use super::distance::{PARALLEL_TOLERANCE, point_triangle};
-use super::pair::{Pair, PairKind, vectors_of};
+use super::pair::{Pair, PairKind};
 use crate::geometry::field::Field;
 use crate::geometry::topology::Topology;
 use crate::platform::simd::{InstructionSet, Vectors, WIDTH, Wide, dispatch_wide, vectors_at};
@@ -157,7 +157,7 @@ pub fn distances(
     for (distance, [first, second]) in distances[before..].iter_mut().zip(pairs) {
         if kind == PairKind::NodeElement && distance.is_nan() {
             let pair = Pair { kind, first: *first, second: *second };
-            let x = vectors_of(positions, pair.nodes(topology));
+            let x = positions.at(pair.nodes(topology));
             *distance = point_triangle(&x).squared.sqrt();
         }
     }

@@ -2,7 +2,7 @@
 
 use super::broad_phase_fault::BroadPhaseFault;
 use super::distance_batch::distances;
-use super::pair::{Pair, PairKind, vectors_of};
+use super::pair::{Pair, PairKind};
 use crate::collision::broad_phase::collision_mesh::{CollisionMesh, pairs_within_bounds};
 use crate::collision::broad_phase::kdop::KDops;
 use crate::geometry::field::Field;
@@ -241,7 +241,7 @@ fn pairs_within(
     let kdops = KDops::new(&mesh.hierarchy, positions);
     pairs_within_bounds(mesh, &kdops, radius, |kind, [first, second]| {
         let pair = Pair { kind, first, second };
-        let gap = pair.closest(&vectors_of(positions, pair.nodes(&mesh.topology))).squared.sqrt();
+        let gap = pair.closest(&positions.at(pair.nodes(&mesh.topology))).squared.sqrt();
         if gap < radius && !is_ignored(&mesh.topology, kind, [first, second]) {
             visit(pair, gap);
         }

@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 pub use crate::collision::broad_phase::query::PairKind;
 
 use super::distance::{Closest, point_triangle, segment_segment};
-use crate::geometry::field::Field;
 use crate::geometry::topology::Topology;
 
 /// Two primitives that can collide: a node and an element, or two edges, the lower number first.
@@ -63,10 +62,4 @@ pub struct CandidatePair {
     pub pair: Pair,
     /// Its gap when it was measured last, m.
     pub gap: f64,
-}
-
-/// The vectors of four nodes.
-#[inline]
-pub fn vectors_of(field: &Field, nodes: [u32; 4]) -> [Vector3<f64>; 4] {
-    nodes.map(|node| field.get(node as usize))
 }

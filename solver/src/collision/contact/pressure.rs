@@ -8,7 +8,6 @@
 
 use super::distance::Closest;
 use super::model::ContactModel;
-use super::pair::vectors_of;
 use super::state::ContactState;
 use crate::geometry::field::Field;
 
@@ -30,7 +29,7 @@ impl ContactModel {
         let mut gaps = vec![self.distance; positions.len()];
         for contact in &state.contacts {
             let nodes = contact.pair.nodes(&self.mesh.topology);
-            let gap = contact.pair.closest(&vectors_of(positions, nodes)).squared.sqrt();
+            let gap = contact.pair.closest(&positions.at(nodes)).squared.sqrt();
             for node in nodes {
                 let least = &mut gaps[node as usize];
                 *least = least.min(gap);
@@ -49,8 +48,7 @@ impl ContactModel {
         let mut forces = vec![0.0; areas.len()];
         for contact in &state.contacts {
             let nodes = contact.pair.nodes(&self.mesh.topology);
-            let Closest { weights, squared, .. } =
-                contact.pair.closest(&vectors_of(positions, nodes));
+            let Closest { weights, squared, .. } = contact.pair.closest(&positions.at(nodes));
             let force = contact.repulsive_force(squared.sqrt());
             for (node, weight) in nodes.iter().zip(weights) {
                 forces[*node as usize] += weight.abs() * force;

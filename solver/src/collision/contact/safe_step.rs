@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 
 use super::ccd::{relative_motion, safe_time};
 use super::model::ContactModel;
-use super::pair::{CandidatePair, Pair, vectors_of};
+use super::pair::{CandidatePair, Pair};
 use crate::geometry::field::Field;
 
 /// Smallest share of its distance that a pair, or a node and a plate, keeps in a step. Chosen: the
@@ -55,8 +55,8 @@ impl ContactModel {
         let mut share = 1.0_f64;
         for candidate in candidates {
             let nodes = candidate.pair.nodes(&self.mesh.topology);
-            let x = vectors_of(positions, nodes);
-            let moves = vectors_of(displacements, nodes).map(|displacement| displacement * share);
+            let x = positions.at(nodes);
+            let moves = displacements.at(nodes).map(|displacement| displacement * share);
             let gap = candidate.pair.closest(&x).squared.sqrt();
             share *= self.safe_time_of_pair(candidate.pair, gap, &x, &moves);
         }

@@ -16,7 +16,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::distance::Closest;
 use super::force_law::Contact;
 use super::model::ContactModel;
-use super::pair::{PairKind, vectors_of};
+use super::pair::PairKind;
 use super::state::ContactState;
 use crate::geometry::field::Field;
 use crate::mechanics::energy_term::Blocks;
@@ -55,7 +55,7 @@ impl ContactModel {
 
     fn pair_blocks(&self, contact: &Contact, positions: &Field, add: Blocks<'_>) {
         let nodes = contact.pair.nodes(&self.mesh.topology);
-        let x = vectors_of(positions, nodes);
+        let x = positions.at(nodes);
         let Closest { weights, between, squared } = contact.pair.closest(&x);
         let gap = squared.sqrt();
         let range = self.adhesion.range;

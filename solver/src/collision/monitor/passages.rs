@@ -70,7 +70,7 @@ impl Passage {
     }
 
     fn positions(self, topology: &Topology, positions: &Field) -> FourPoints {
-        self.nodes(topology).map(|node| positions.get(node as usize))
+        positions.at(self.nodes(topology))
     }
 
     /// Whether this passage occurs on the straight motion between two positions of all nodes.

@@ -37,7 +37,7 @@ fn of_patch(patch: &Patch, positions: &Field, pressure: f64, out: &mut DMatrix<f
     let mut along_normal = Vector3::zeros();
     for face in &patch.faces {
         let block = tangent::pressure(*face, positions, pressure);
-        let [a, b, c] = face.map(|node| positions.get(node as usize));
+        let [a, b, c] = positions.at(*face);
         let force = (b - a).cross(&(c - a)) * (pressure / 6.0);
         for i in 0..3 {
             let Some(of_corner) = follower(face[i]) else { continue };

@@ -26,7 +26,7 @@ pub fn volume(model: &FilmModel, positions: &Field) -> f64 {
         .iter()
         .chain(&model.closure)
         .map(|triangle| {
-            let [a, b, c] = triangle.map(|node| positions.get(node as usize));
+            let [a, b, c] = positions.at(*triangle);
             a.dot(&b.cross(&c))
         })
         .sum();
@@ -38,7 +38,7 @@ pub fn volume(model: &FilmModel, positions: &Field) -> f64 {
 pub fn add_closure(model: &FilmModel, positions: &Field, forces: &mut NodeForces) -> f64 {
     let mut six = 0.0;
     for face in &model.closure {
-        let [a, b, c] = face.map(|node| positions.get(node as usize));
+        let [a, b, c] = positions.at(*face);
         let normal = (b - a).cross(&(c - a));
         for node in face {
             forces.add_normal(*node as usize, normal);

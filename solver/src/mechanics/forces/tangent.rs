@@ -51,7 +51,7 @@ pub fn material_tangent(material: &Material, strain: PlaneTensor) -> Matrix3<f64
 
 /// Elastic stiffness of an element of film without loss with its nodes at these positions (m).
 pub fn elastic(model: &FilmModel, positions: &Field, element: usize) -> Stiffness {
-    let corners = model.triangles[element].map(|node| positions.get(node as usize));
+    let corners = positions.at(model.triangles[element]);
     let inverse_shape = model.inverse_shape.each_ref().map(|column| column[element]);
     let strain = strain(model, positions, element);
     let tangent = material_tangent(&model.material, strain);
@@ -84,7 +84,7 @@ pub fn elements<'a>(
             return None;
         }
         let [a, b, d] = constants.inverse_shape.each_ref().map(|lanes| lanes.0[lane]);
-        let corners = nodes.map(|node| positions.get(node as usize));
+        let corners = positions.at(nodes);
         let inverse_shape = [a, b, 0.0, d];
         let (total, ratio) = (strain_of(corners, inverse_shape), model.creep.ratio);
         let [sum, difference, shear] = creep[block][half].lane(lane);
@@ -143,7 +143,7 @@ pub fn add_products(
     products: &mut Field,
 ) {
     for (nodes, stiffness) in faces.iter().zip(stiffness) {
-        let u = nodes.map(|node| displacements.get(node as usize));
+        let u = displacements.at(*nodes);
         let u = SVector::<f64, 9>::from_fn(|row, _| u[row / 3][row % 3]);
         let f = stiffness * u;
         for (corner, node) in nodes.iter().enumerate() {
@@ -162,7 +162,7 @@ pub fn pressure(face: [u32; 3], positions: &Field, pressure: f64) -> Stiffness {
 
 /// Adds the stiffness of a pressure (Pa) on a face at these positions (m).
 pub fn add_pressure(stiffness: &mut Stiffness, face: [u32; 3], positions: &Field, pressure: f64) {
-    let [a, b, c] = face.map(|node| positions.get(node as usize));
+    let [a, b, c] = positions.at(face);
     let edges = [c - b, a - c, b - a];
     for i in 0..3 {
         for j in 0..i {

@@ -83,24 +83,28 @@ fn gaps(pleat: &Pleat, layer: usize, positions: &Field) -> Vec<(f64, f64)> {
     }
     // Most film is farther away than the nearest so far: spheres exclude eight elements together, and each alone.
     let film = &pleat.layers[1 - layer].film;
-    let spheres: Vec<_> = film.iter().map(|nodes| Sphere::about(nodes, positions)).collect();
-    let blocks: Vec<_> =
-        film.chunks(BLOCK).map(|block| Sphere::about(block.as_flattened(), positions)).collect();
-    let mut first = 0;
+    let spheres: Vec<_> = film.iter().map(|nodes| Sphere::about(positions.at(*nodes))).collect();
+    let blocks: Vec<_> = spheres.chunks(BLOCK).map(Sphere::around).collect();
+    let mut nearest_element = 0;
     let gap = |node: u32| {
         let point = positions.get(node as usize);
-        let mut nearest = f64::INFINITY;
-        // First the block that was nearest to the node before.
-        for block in core::iter::once(first).chain(0..blocks.len()) {
-            if !blocks[block].is_within(&point, nearest) {
+        let distance = |element: usize| {
+            let [a, b, c] = positions.at(film[element]);
+            point_triangle(&[point, a, b, c]).squared.sqrt()
+        };
+        // First the element that was nearest to the node before: it bounds the distance to all others.
+        let first = nearest_element;
+        let mut nearest = distance(first);
+        for (block, sphere) in blocks.iter().enumerate() {
+            if !sphere.is_within(&point, nearest) {
                 continue;
             }
-            for element in block * BLOCK..film.len().min((block + 1) * BLOCK) {
-                if spheres[element].is_within(&point, nearest) {
-                    let [a, b, c] = film[element].map(|node| positions.get(node as usize));
-                    let distance = point_triangle(&[point, a, b, c]).squared.sqrt();
+            let elements = spheres.iter().enumerate().skip(block * BLOCK).take(BLOCK);
+            for (element, sphere) in elements {
+                if element != first && sphere.is_within(&point, nearest) {
+                    let distance = distance(element);
                     if distance < nearest {
-                        (nearest, first) = (distance, block);
+                        (nearest, nearest_element) = (distance, element);
                     }
                 }
             }
@@ -111,18 +115,27 @@ fn gaps(pleat: &Pleat, layer: usize, positions: &Field) -> Vec<(f64, f64)> {
     rim.iter().map(|(_, length)| *length).zip(gaps).collect()
 }
 
-/// A sphere about nodes.
+/// A sphere that holds film.
 struct Sphere {
     centre: Vector3<f64>,
     radius: f64,
 }
 
 impl Sphere {
-    fn about(nodes: &[u32], positions: &Field) -> Self {
-        let points = || nodes.iter().map(|node| positions.get(*node as usize));
-        let centre = points().sum::<Vector3<f64>>() / nodes.len() as f64;
-        let squared = points().map(|point| (point - centre).norm_squared()).fold(0.0, f64::max);
-        Self { centre, radius: squared.sqrt() }
+    /// About the corners of an element.
+    fn about(corners: [Vector3<f64>; 3]) -> Self {
+        let [a, b, c] = corners;
+        let centre = (a + b + c) / 3.0;
+        let squared = corners.map(|corner| (corner - centre).norm_squared());
+        Self { centre, radius: squared[0].max(squared[1]).max(squared[2]).sqrt() }
+    }
+
+    /// Around spheres.
+    fn around(spheres: &[Self]) -> Self {
+        let centre =
+            spheres.iter().map(|sphere| sphere.centre).sum::<Vector3<f64>>() / spheres.len() as f64;
+        let reach = |sphere: &Self| (sphere.centre - centre).norm() + sphere.radius;
+        Self { centre, radius: spheres.iter().map(reach).fold(0.0, f64::max) }
     }
 
     /// Whether a part of it may be nearer to a point than this distance (m).
@@ -137,8 +150,8 @@ fn volume(pleat: &Pleat, positions: &Field, velocities: &Field) -> (f64, f64) {
     let film = pleat.layers.iter().flat_map(|layer| &layer.film);
     let (mut volume, mut rate) = (0.0, 0.0);
     for nodes in film.chain(&pleat.mouth) {
-        let [a, b, c] = nodes.map(|node| positions.get(node as usize));
-        let [va, vb, vc] = nodes.map(|node| velocities.get(node as usize));
+        let [a, b, c] = positions.at(*nodes);
+        let [va, vb, vc] = velocities.at(*nodes);
         let (bc, ca, ab) = (b.cross(&c), c.cross(&a), a.cross(&b));
         volume += a.dot(&bc) / 6.0;
         rate += (va.dot(&bc) + vb.dot(&ca) + vc.dot(&ab)) / 6.0;
@@ -166,7 +179,7 @@ mod tests {
         let nearest = |node: u32| {
             let point = positions.get(node as usize);
             let distance = |nodes: &[u32; 3]| {
-                let [a, b, c] = nodes.map(|node| positions.get(node as usize));
+                let [a, b, c] = positions.at(*nodes);
                 point_triangle(&[point, a, b, c]).squared.sqrt()
             };
             mesh.pleats[0].layers[0].film.iter().map(distance).fold(f64::INFINITY, f64::min)

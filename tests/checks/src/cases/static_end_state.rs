@@ -29,7 +29,7 @@ fn sizes(state: &StaticSolution, capsule: &CappedFrustum) -> [f64; 5] {
     };
     let centres = capsule.rims.each_ref().map(middle);
     let radius = |rim: usize| mean(state, &capsule.rims[rim], |x| (x - centres[rim]).xy().norm());
-    let pole = capsule.poles.map(|node| state.positions.get(node as usize));
+    let pole = state.positions.at(capsule.poles);
     [
         state.volume,
         radius(0),

@@ -86,7 +86,7 @@ pub fn cone(rig: &Rig) -> Outcome {
         let (mut sum, mut count) = ([0.0; 2], 0.0);
         largest = [0.0; 2];
         for (element, triangle) in state.model.triangles.iter().enumerate() {
-            let corners = triangle.map(|node| state.positions.get(node as usize));
+            let corners = state.positions.at(*triangle);
             let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
             if (middle.z / height - 0.5).abs() < 1.0 / 6.0 {
                 // The mean radius of the corners lies nearer to the surface than that of the chord.

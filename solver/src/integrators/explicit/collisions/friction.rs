@@ -10,7 +10,6 @@
 
 use super::step::{CollisionStep, Impulses};
 use crate::collision::contact::distance::Closest;
-use crate::collision::contact::pair::vectors_of;
 use crate::collision::contact::{Contact, ContactModel};
 
 /// Reduces the tangential velocities of contacts after a kick of `kick_length` (s), and gives the impulses.
@@ -27,8 +26,7 @@ pub(in crate::integrators::explicit) fn apply_friction(
     let film = step.film;
     for contact in contacts {
         let nodes = contact.pair.nodes(&contact_model.mesh.topology);
-        let Closest { weights, between, squared } =
-            contact.pair.closest(&vectors_of(step.positions, nodes));
+        let Closest { weights, between, squared } = contact.pair.closest(&step.positions.at(nodes));
         let normal_force = contact.repulsive_force(squared.sqrt());
         if normal_force == 0.0 {
             continue;
@@ -36,7 +34,9 @@ pub(in crate::integrators::explicit) fn apply_friction(
         let normal = between / squared.sqrt();
         let mobility_of = |k: usize| weights[k] * weights[k] * film.inverse_mass[nodes[k] as usize];
         let mobility = (0..4).map(mobility_of).sum::<f64>();
-        let relative = vectors_of(step.velocities, nodes)
+        let relative = step
+            .velocities
+            .at(nodes)
             .iter()
             .zip(weights)
             .map(|(v, w)| v * w)

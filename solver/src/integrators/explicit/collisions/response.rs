@@ -19,7 +19,7 @@ use nalgebra::Vector3;
 
 use super::step::CollisionStep;
 use crate::collision::contact::ContactModel;
-use crate::collision::contact::pair::{CandidatePair, Pair, vectors_of};
+use crate::collision::contact::pair::{CandidatePair, Pair};
 use crate::collision::contact::safe_step::MAX_UNTESTED_APPROACH;
 
 /// How far a pair can approach at most, in units of the largest displacement D of any node. A node
@@ -145,9 +145,9 @@ fn resolve_pair(
 ) -> bool {
     let CandidatePair { pair, gap } = candidate;
     let nodes = pair.nodes(&contact_model.mesh.topology);
-    let velocities = vectors_of(step.velocities, nodes);
+    let velocities = step.velocities.at(nodes);
     let displacements = velocities.map(|velocity| velocity * step.length);
-    let x = vectors_of(step.positions, nodes);
+    let x = step.positions.at(nodes);
     let time = contact_model.safe_time_of_pair(pair, gap, &x, &displacements);
     if time >= 1.0 {
         return false;

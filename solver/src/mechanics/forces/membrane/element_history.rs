@@ -8,6 +8,8 @@
 //! the next step. The numerical stress depends on the last step. So all of it belongs to an integrator and
 //! not to the state of the film.
 
+use std::collections::BinaryHeap;
+
 use serde::{Deserialize, Serialize};
 
 use super::{CreepStrain, strain};
@@ -70,25 +72,30 @@ pub fn stress_on_fraction(
     histories: &[[ElementHistory; 2]],
     fraction: f64,
 ) -> f64 {
-    let mut stresses = Vec::with_capacity(model.elements());
+    let mut tensions = Vec::with_capacity(model.elements());
     let mut total = 0.0;
     for (constants, histories) in model.constants.iter().zip(histories) {
         for (block, history) in constants.iter().zip(histories) {
             for (lane, minus_volume) in block.minus_volume.0.iter().enumerate() {
                 let [mean, half_difference, xy] = lane_of(&history.stress, lane);
-                let radius = (half_difference * half_difference + xy * xy).sqrt();
-                stresses.push((mean + radius, -minus_volume));
+                let stress = mean + (half_difference * half_difference + xy * xy).sqrt();
+                if stress > 0.0 {
+                    // Bits of positive numbers have their order.
+                    tensions.push((stress.to_bits(), (-minus_volume).to_bits()));
+                }
                 total -= minus_volume;
             }
         }
     }
-    stresses.sort_unstable_by(|(s, u), (t, v)| t.total_cmp(s).then(v.total_cmp(u)));
-    let mut area = 0.0;
-    let reached = stresses.iter().find(|(_, volume)| {
-        area += volume;
-        area >= fraction * total
-    });
-    reached.map_or(0.0, |(stress, _)| stress.max(0.0))
+    // The fraction is small: a heap sorts no more than it needs.
+    let (mut tensions, mut area) = (BinaryHeap::from(tensions), 0.0);
+    while let Some((stress, volume)) = tensions.pop() {
+        area += f64::from_bits(volume);
+        if area >= fraction * total {
+            return f64::from_bits(stress);
+        }
+    }
+    0.0
 }
 
 /// Forces of the numerical stress on the nodes (N) at these positions (m): a part of the membrane

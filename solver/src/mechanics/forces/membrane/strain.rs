@@ -12,7 +12,7 @@ use crate::mechanics::material::PlaneTensor;
 
 /// Columns of F of an element.
 pub fn deformation_gradient(model: &FilmModel, field: &Field, element: usize) -> [Vector3<f64>; 2] {
-    let [x0, x1, x2] = model.triangles[element].map(|node| field.get(node as usize));
+    let [x0, x1, x2] = field.at(model.triangles[element]);
     let [a, b, c, d] = model.inverse_shape.each_ref().map(|column| column[element]);
     gradient([x1 - x0, x2 - x0], [[a, b], [c, d]])
 }
@@ -34,7 +34,7 @@ pub fn strain_of([x0, x1, x2]: [Vector3<f64>; 3], [a, b, c, d]: [f64; 4]) -> Pla
 
 /// Edges p and q of the two elements of a kite.
 pub(super) fn edges_of_kite(field: &Field, kite: &[u32; 4]) -> [[Vector3<f64>; 2]; 2] {
-    let [s, a, t, b] = kite.map(|node| field.get(node as usize));
+    let [s, a, t, b] = field.at(*kite);
     [[a - s, t - s], [t - s, b - s]]
 }
 
