@@ -21,14 +21,15 @@ use crate::system::{FilmState, FilmSystem};
 const MAX_DIFFERENCE: f64 = 1e-5;
 /// η over the distance to the nearer end of the cubic. Chosen: 2 η stays inside.
 const STEP: f64 = 0.25;
-/// That distance over the range of adhesion below which a contact has no force that counts. Chosen: the energy differs
-/// by its rounding there.
-const MIN_DISTANCE: f64 = 1e-9;
+/// That distance over the range of adhesion below which the force is left out. Chosen: the energy differs by its
+/// rounding there, and the force is a tenth of what [`MIN_ADHESION`] allows.
+const MIN_DISTANCE: f64 = 1e-8;
 
 /// Penetration over the offset below which a force counts as that of this penetration. Chosen: the rounding of a gap
 /// is no error.
 const MIN_PENETRATION: f64 = 1e-3;
-/// Part of the largest adhesive force that counts at least, for the same reason.
+/// Part of the largest adhesive force that counts at least: that at a hundredth of the range. Chosen: above the
+/// rounding of energies at [`MIN_DISTANCE`].
 const MIN_ADHESION: f64 = 0.04;
 
 /// Sum of virtual works, J, and of their magnitudes.
@@ -57,7 +58,7 @@ fn force(energy: impl Fn(f64) -> f64, gap: f64, step: f64) -> f64 {
     (8.0 * difference(step) - difference(2.0 * step)) / (12.0 * step)
 }
 
-/// η of a contact with this penetration (m; negative beyond the offset) and range of adhesion (m), m; 0 without a force.
+/// η of a contact with this penetration (m; negative beyond the offset) and range of adhesion (m), m; 0 without force.
 fn step(penetration: f64, range: f64) -> f64 {
     let distance =
         if penetration > 0.0 { penetration } else { (-penetration).min(range + penetration) };
@@ -85,14 +86,13 @@ fn of_energies(model: &ContactModel, system: &FilmSystem, state: &FilmState) -> 
         let Closest { weights, between, squared } =
             contact.pair.closest(&state.positions.at(nodes));
         let gap = squared.sqrt();
+        let moved = nodes
+            .iter()
+            .zip(weights)
+            .map(|(node, weight)| between.dot(&displacement(*node as usize)) * (weight / gap));
+        // Also without a force: the gap of the forces may differ by its rounding.
         let force = force_of(contact, gap, model.adhesion.range);
-        if force != 0.0 {
-            let moved = nodes
-                .iter()
-                .zip(weights)
-                .map(|(node, weight)| between.dot(&displacement(*node as usize)) * (weight / gap));
-            work.add(force, moved.sum::<f64>(), least_force(contact));
-        }
+        work.add(force, moved.sum::<f64>(), least_force(contact));
     }
     for (plate, plate_state) in model.plates.iter().zip(&state.contact.plates) {
         let height = plate.height(state.time);
@@ -146,12 +146,12 @@ mod tests {
         let (stiffness, adhesion) = (40.0, 1e-3);
         let contact =
             Contact { pair, feature: 0, offset, stiffness, gap: offset, adhesion, energy: 0.0 };
-        for share in [1e-8, 1e-6, 1e-4, 0.01, 0.3, 0.5] {
+        for share in [0.0, 1e-12, 1e-9, 1.1e-8, 1e-6, 1e-4, 0.01, 0.3, 0.5] {
             for gap in [share, 1.0 - share, -10.0 * share].map(|share| offset + share * range) {
                 let expected = contact.repulsive_force(gap) - contact.adhesive_force(gap, range);
                 let difference = (expected - force_of(&contact, gap, range)).abs();
                 let magnitude = expected.abs() + least_force(&contact);
-                assert!(difference <= 0.1 * MAX_DIFFERENCE * magnitude, "{share}: {difference} N");
+                assert!(difference <= 0.5 * MAX_DIFFERENCE * magnitude, "{share}: {difference} N");
             }
         }
     }

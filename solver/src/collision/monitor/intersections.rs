@@ -70,10 +70,9 @@ fn intersects(topology: &Topology, positions: &Field, [edge, element]: [u32; 2])
     if topology.ignores_edge(edge, element) {
         return false;
     }
-    let position = |node: u32| positions.get(node as usize);
     segment_intersects_triangle(
-        topology.edges[edge as usize].map(position),
-        topology.triangles[element as usize].map(position),
+        positions.at(topology.edges[edge as usize]),
+        positions.at(topology.triangles[element as usize]),
     )
 }
 

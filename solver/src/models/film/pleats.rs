@@ -92,7 +92,7 @@ fn gaps(pleat: &Pleat, layer: usize, positions: &Field) -> Vec<(f64, f64)> {
             let [a, b, c] = positions.at(film[element]);
             point_triangle(&[point, a, b, c]).squared.sqrt()
         };
-        // First the element that was nearest to the node before: it bounds the distance to all others.
+        // First the element nearest to the previous node: the gap is at most its distance.
         let first = nearest_element;
         let mut nearest = distance(first);
         for (block, sphere) in blocks.iter().enumerate() {
