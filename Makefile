@@ -1,7 +1,7 @@
 # make study    install what is missing, build, run studies/first.json, print its table, draw its charts
 # make test     the quick tier of the tests and of the reference cases (what CI runs)
 # make test-all the quick tier, the long ones, every reference case, the Python readers, and the reports in a browser
-# make contact-matrix  the paper's capsule with contact over meshes, loads and seeds (an hour)
+# make contact-matrix  the paper's capsule with contact over meshes, loads and seeds (four minutes)
 # make torture  kills, signals, full disks, damaged and mutated files, little memory: 20 minutes, one table
 # make paper    the studies of the paper's cases (an hour), their tables and pictures in results/paper/published
 # make pareto   work-precision diagrams: studies/pareto.json (three quarters of an hour on two cores) and the scenes with an
