@@ -109,7 +109,7 @@ fn every_scene_without_a_fault_is_done() {
 
 /// On finer meshes, where another audit may be the first.
 #[test]
-#[ignore = "minutes"]
+#[ignore = "long: finer meshes"]
 fn every_fault_is_caught_on_finer_meshes() {
     let mut wrong = unfinished(1);
     wrong.extend(disagreements(1, false));
