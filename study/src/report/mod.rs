@@ -5,6 +5,7 @@
 //! set every text of a study as text, never as HTML, so whatever a name holds is inert.
 
 use std::collections::BTreeSet;
+use std::fmt::{self, Write as _};
 
 use serde_json::{Value as Json, json};
 
@@ -87,7 +88,7 @@ impl Report<'_> {
         let mut topics: Vec<Json> =
             topics(answer).iter().map(|t| json!([t.name, t.lines])).collect();
         topics.extend(before.iter().map(|before| json!(["run before", before.lines(table)])));
-        let mut data = json!({
+        let data = json!({
             "study": study.name,
             "question": answer.question,
             "topics": topics,
@@ -106,23 +107,27 @@ impl Report<'_> {
             "replicates": study.replicates(),
             "points": table::points(table, &study.replicates()),
             "limits": table::limits(study.result_limits()),
-            "charts": self.charts,
             "provenance": self.provenance()?,
         });
-        let parts: usize = PARTS.iter().map(|(_, text)| text.len()).sum();
-        let mut budget =
-            Budget { free: self.size - (parts + PAGE.len() + data.to_string().len()) as f64 };
-        data["curves"] = curves::curves(stored, &jobs, &mut budget);
-        data["shapes"] = shapes::shapes(stored, &jobs, &self.named(), &mut budget);
-        let notes = notes(&data);
-        data["notes"] = json!(notes);
-        // No text can end the block, or begin another one.
-        let data = data.to_string().replace('<', "\\u003c");
-        let mut page = PAGE.to_owned();
+        let mut parts = PAGE.to_owned();
         for (name, text) in PARTS {
-            page = page.replacen(&format!("{{{{{name}}}}}"), text, 1);
+            parts = parts.replacen(&format!("{{{{{name}}}}}"), text, 1);
         }
-        Ok((page.replacen("{{data}}", &data, 1), notes))
+        let (before, after) = parts.split_once("{{data}}").unwrap_or((&parts, ""));
+        // The page of a large study takes as much memory as its table: it is written once, part after part.
+        let mut page = before.to_owned();
+        push(&mut page, &data);
+        drop(data);
+        add(&mut page, "charts", &json!(self.charts));
+        let mut budget = Budget { free: self.size - (page.len() + after.len()) as f64 };
+        let curves = curves::curves(stored, &jobs, &mut budget);
+        let shapes = shapes::shapes(stored, &jobs, &self.named(), &mut budget);
+        let notes = notes(&curves, &shapes);
+        add(&mut page, "curves", &curves);
+        add(&mut page, "shapes", &shapes);
+        add(&mut page, "notes", &json!(notes));
+        page.push_str(after);
+        Ok((page, notes))
     }
 
     /// The rows whose job has a history, each job once.
@@ -171,18 +176,45 @@ fn spread<T: Clone>(items: &[T], most: usize) -> Vec<T> {
     (0..count).map(|k| items[k * items.len() / count].clone()).collect()
 }
 
+/// JSON in a page: no text of it can end its block, or begin another one.
+struct Inert<'a>(&'a mut String);
+
+impl fmt::Write for Inert<'_> {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        for part in text.split_inclusive('<') {
+            let without = part.strip_suffix('<');
+            self.0.push_str(without.unwrap_or(part));
+            self.0.push_str(without.map_or("", |_| "\\u003c"));
+        }
+        Ok(())
+    }
+}
+
+/// Appends JSON to a page.
+fn push(page: &mut String, json: &Json) {
+    write!(Inert(page), "{json}").expect("a text takes every text");
+}
+
+/// Adds a member to the object that ends a page.
+fn add(page: &mut String, name: &str, json: &Json) {
+    page.pop();
+    page.extend([",\"", name, "\":"]);
+    push(page, json);
+    page.push('}');
+}
+
 /// What the page leaves out.
-fn notes(data: &Json) -> Vec<String> {
-    let number = |part: &str, name: &str| data[part][name].as_u64().unwrap_or(0);
+fn notes(curves: &Json, shapes: &Json) -> Vec<String> {
+    let number = |part: &Json, name: &str| part[name].as_u64().unwrap_or(0);
     let mut notes = Vec::new();
-    let jobs = |part: &str| data[part]["jobs"].as_array().map_or(0, Vec::len);
-    for (part, what) in [("curves", "curves"), ("shapes", "shapes in motion")] {
-        let (with, without) = (jobs(part), number(part, "without"));
+    for (part, what) in [(curves, "curves"), (shapes, "shapes in motion")] {
+        let with = part["jobs"].as_array().map_or(0, Vec::len);
+        let without = number(part, "without");
         if with > 0 && without > 0 {
             notes.push(format!("{what} of {with} jobs; {without} others have none here"));
         }
     }
-    let every = number("shapes", "every");
+    let every = number(shapes, "every");
     if every > 1 {
         notes.push(format!("one of {every} stored frames, for the size of the file"));
     }

@@ -70,13 +70,9 @@ pub fn columns(table: &Table, limits: &[ResultLimit]) -> Vec<Json> {
 
 /// Whether a column has two different cells.
 fn varies(column: &Column) -> bool {
-    match &column.cells {
-        ColumnCells::Same(..) => false,
-        ColumnCells::Each(cells) => cells
-            .first()
-            .map(canonical)
-            .is_some_and(|first| cells.iter().any(|cell| canonical(cell) != first)),
-    }
+    let mut cells = column.cells.iter().map(canonical);
+    let is_same = matches!(column.cells, ColumnCells::Same(..));
+    !is_same && cells.next().is_some_and(|first| cells.any(|cell| cell != first))
 }
 
 fn is_number(column: &Column) -> bool {

@@ -1,7 +1,6 @@
 //! The contents of a results folder: its study, planned again, and its journal. Reading changes
 //! nothing and holds no lock, so it works while a run goes on.
 
-use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -78,14 +77,14 @@ impl<'a> Stored<'a> {
     }
 
     /// The row of a point.
-    pub fn cells(&self, point: &Point) -> Cow<'_, Cells> {
+    pub fn cells(&self, point: &Point) -> Cells {
         journal::row_of(point, &self.journal.records)
     }
 
     /// The row of a job: that of its point, or for a job without one its record.
     pub fn cells_of_job(&self, id: &JobId) -> Cells {
         if let Some(point) = self.point(id) {
-            return self.cells(point).into_owned();
+            return self.cells(point);
         }
         let record = self.record(id).map(|record| record.cells.clone());
         record.unwrap_or_else(|| Cells::new(Status::Pending))

@@ -1,5 +1,7 @@
 //! One row of the summary table: what a job was, how it ended, what it measured, what it took.
 
+use std::sync::Arc;
+
 use billow_solver::output::measures::Verdict;
 
 use crate::input::value::Value;
@@ -26,14 +28,15 @@ pub const SAME_JOB_AS: &str = "same_job_as";
 pub const SAME_JOB_AS_MEANING: &str =
     "other points of the study that are the same job: the parameters in which they differ";
 
-/// The cells of one row. A study has many rows, and a third of their cells are null: those take no memory.
+/// The cells of one row; a copy shares them. A study has many rows, and a third of their cells are null: those take no
+/// memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cells {
     status: Status,
     /// Which cells are not null: bit k is that of column k of [`COLUMNS`].
     present: u128,
     /// The cells that are not null, in the order of their columns.
-    values: Vec<Value>,
+    values: Arc<Vec<Value>>,
 }
 
 const _: () = assert!(COLUMNS.len() <= u128::BITS as usize, "a bit for every column");
@@ -53,11 +56,12 @@ impl Cells {
 
     /// A row of these cells, that of the status among them; every other cell is null.
     pub fn with(status: Status, cells: impl IntoIterator<Item = (ColumnId, Value)>) -> Self {
-        let mut row = Self { status, present: 0, values: Vec::with_capacity(COLUMNS.len()) };
+        let values = Arc::new(Vec::with_capacity(COLUMNS.len()));
+        let mut row = Self { status, present: 0, values };
         for (column, value) in cells {
             row.put(column, value);
         }
-        row.values.shrink_to_fit();
+        Arc::make_mut(&mut row.values).shrink_to_fit();
         row
     }
 
@@ -85,12 +89,13 @@ impl Cells {
 
     fn put(&mut self, column: ColumnId, value: Value) {
         let (place, bit) = (self.place(column), 1 << column.index());
+        let values = Arc::make_mut(&mut self.values);
         if self.present & bit != 0 {
-            self.values.remove(place);
+            values.remove(place);
             self.present &= !bit;
         }
         if value != Value::Null {
-            self.values.insert(place, value);
+            values.insert(place, value);
             self.present |= bit;
         }
     }

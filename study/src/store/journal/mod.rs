@@ -18,7 +18,6 @@
 //! `checksum` is that of [`billow_solver::platform::seal`]. A line that is not valid costs its own record
 //! only.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -98,16 +97,16 @@ impl std::fmt::Display for Fault {
 }
 
 /// The row of a point; `None` while its job has not ended.
-pub fn cells_of<'a>(point: &Point, records: &'a BTreeMap<JobId, Record>) -> Option<Cow<'a, Cells>> {
+pub fn cells_of(point: &Point, records: &BTreeMap<JobId, Record>) -> Option<Cells> {
     if let Some(infeasible) = &point.infeasible {
-        return Some(Cow::Owned(Cells::infeasible(infeasible)));
+        return Some(Cells::infeasible(infeasible));
     }
-    Some(Cow::Borrowed(&records.get(&point.job.id)?.cells))
+    Some(records.get(&point.job.id)?.cells.clone())
 }
 
 /// The row of a point, pending while its job has not ended.
-pub fn row_of<'a>(point: &Point, records: &'a BTreeMap<JobId, Record>) -> Cow<'a, Cells> {
-    cells_of(point, records).unwrap_or_else(|| Cow::Owned(Cells::new(Status::Pending)))
+pub fn row_of(point: &Point, records: &BTreeMap<JobId, Record>) -> Cells {
+    cells_of(point, records).unwrap_or_else(|| Cells::new(Status::Pending))
 }
 
 /// What the journals of a study hold.

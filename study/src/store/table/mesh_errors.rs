@@ -4,8 +4,6 @@
 //! Rows of the model film have them. The error of a model without mesh is of another kind: it would make most
 //! comparisons of its rows ties, though its errors are alike from design to design. `billow plan --accuracy` names it.
 
-use std::borrow::Cow;
-
 use super::Column;
 use super::same_job::PointRow;
 use crate::accuracy::{
@@ -17,28 +15,34 @@ use crate::job::row::{CellType, Cells};
 /// The columns of these rows.
 pub(super) fn columns(
     points: &[PointRow<'_>],
-    rows: &[Cow<'_, Cells>],
+    rows: &[Cells],
     ranges: &AssumedRanges,
 ) -> Vec<Column> {
-    let all: Vec<RowErrors> = points
-        .iter()
-        .zip(rows)
-        .map(|(point, cells)| RowErrors::of(&point.point.job.scene, cells, ranges))
-        .collect();
+    let mut reasons = Vec::with_capacity(rows.len());
+    let errors = |(point, cells): (&PointRow<'_>, &Cells)| {
+        let mut row = RowErrors::of(&point.point.job.scene, cells, ranges);
+        reasons.push(row.reason.take().map_or(Value::Null, Value::Text));
+        // A large study is one of a model whose rows have none.
+        let has_any = row.errors.iter().chain(&row.assumed).any(Option::is_some);
+        has_any.then(|| Box::new(row))
+    };
+    let all: Vec<Option<Box<RowErrors>>> = points.iter().zip(rows).map(errors).collect();
     let number = |value: Option<f64>| value.map_or(Value::Null, Value::Number);
     let mut columns = Vec::new();
     for (index, promised) in PROMISED.iter().enumerate() {
         let kind = (CellType::Number, promised.measure.column().unit);
         for (part, (name, meaning)) in promised.columns().into_iter().enumerate() {
             let cells = all.iter().map(|row| {
-                let [errors, assumed] = [row.errors[index], row.assumed[index]]
-                    .map(|sides| sides.map_or([None; 2], |sides| sides.map(Some)));
+                let of_row = |of: fn(&RowErrors) -> &[Option<[f64; 2]>]| {
+                    let sides = row.as_ref().and_then(|row| of(row)[index]);
+                    sides.map_or([None; 2], |sides| sides.map(Some))
+                };
+                let (errors, assumed) = (of_row(|row| &row.errors), of_row(|row| &row.assumed));
                 number([errors[0], errors[1], assumed[0], assumed[1]][part])
             });
             columns.push(Column::new(name, kind, meaning, cells.collect()));
         }
     }
-    let reasons = all.into_iter().map(|row| row.reason.map_or(Value::Null, Value::Text)).collect();
     let kind = (CellType::Text, "");
     columns.push(Column::new(NO_ERROR_REASON, kind, NO_ERROR_REASON_MEANING, reasons));
     columns

@@ -5,7 +5,6 @@
 //! [`crate::accuracy::PROMISED`], then [`crate::job::row::SAME_JOB_AS`]. A parameter keeps its name when a later column has the same one; the
 //! later column is then called `<name>_resolved`.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -58,13 +57,15 @@ pub struct Column {
 }
 
 /// The cells of a column; a copy shares them. Where all of them are the same, as in a column that no job fills, one is
-/// kept.
+/// kept; those of a measure are the ones of the records.
 #[derive(Debug, Clone)]
 pub enum ColumnCells {
     /// This cell, and the number of rows.
     Same(Value, usize),
     /// The cell of each row.
     Each(Arc<Vec<Value>>),
+    /// The cells of all rows, and the column of these.
+    Of(Arc<Vec<Cells>>, ColumnId),
 }
 
 impl ColumnCells {
@@ -74,6 +75,7 @@ impl ColumnCells {
         match self {
             Self::Same(_, rows) => *rows,
             Self::Each(cells) => cells.len(),
+            Self::Of(rows, _) => rows.len(),
         }
     }
 
@@ -81,21 +83,30 @@ impl ColumnCells {
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &Value> {
         (0..self.len()).map(|row| &self[row])
     }
-}
 
-impl From<Vec<Value>> for ColumnCells {
-    fn from(cells: Vec<Value>) -> Self {
+    /// The cells of one column in these rows.
+    fn of(rows: &Arc<Vec<Cells>>, column: ColumnId) -> Self {
+        Self::Of(Arc::clone(rows), column).shortened()
+    }
+
+    /// One cell, where all are the same.
+    fn shortened(self) -> Self {
         // Zero and negative zero are two values.
         let same = |a: &Value, b: &Value| match (a, b) {
             (Value::Number(a), Value::Number(b)) => a.to_bits() == b.to_bits(),
             _ => a == b,
         };
-        match cells.first() {
-            Some(first) if cells.iter().all(|cell| same(first, cell)) => {
-                Self::Same(first.clone(), cells.len())
-            }
-            _ => Self::Each(Arc::new(cells)),
+        let first = self.iter().next().cloned();
+        match first.filter(|first| self.iter().all(|cell| same(first, cell))) {
+            Some(first) => Self::Same(first, self.len()),
+            None => self,
         }
+    }
+}
+
+impl From<Vec<Value>> for ColumnCells {
+    fn from(cells: Vec<Value>) -> Self {
+        Self::Each(Arc::new(cells)).shortened()
     }
 }
 
@@ -107,18 +118,19 @@ impl std::ops::Index<usize> for ColumnCells {
             Self::Same(cell, rows) if row < *rows => cell,
             Self::Same(_, rows) => panic!("row {row} of {rows}"),
             Self::Each(cells) => &cells[row],
+            Self::Of(rows, column) => rows[row].get(*column),
         }
     }
 }
 
 impl std::ops::IndexMut<usize> for ColumnCells {
     fn index_mut(&mut self, row: usize) -> &mut Value {
-        if let Self::Same(cell, rows) = self {
-            *self = Self::Each(Arc::new(vec![cell.clone(); *rows]));
+        if !matches!(self, Self::Each(_)) {
+            *self = Self::Each(Arc::new(self.iter().cloned().collect()));
         }
         match self {
             Self::Each(cells) => &mut Arc::make_mut(cells)[row],
-            Self::Same(..) => unreachable!("every row has its cell now"),
+            Self::Same(..) | Self::Of(..) => unreachable!("every row has its cell now"),
         }
     }
 }
@@ -205,13 +217,13 @@ impl Table {
         let parameters: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
 
         let row = |row: &PointRow<'_>| journal::row_of(row.point, records);
-        let rows: Vec<Cow<'_, Cells>> = points.iter().map(row).collect();
+        let rows: Arc<Vec<Cells>> = Arc::new(points.iter().map(row).collect());
         for column in COLUMNS {
             let shadowed = parameters.iter().any(|name| name == column.name);
             let name = format!("{}{}", column.name, if shadowed { RESOLVED } else { "" });
-            let cells = rows.iter().map(|row| row.get(column.id).clone()).collect();
             let kind = (column.cell_type, column.unit);
-            columns.push(Column::new(name, kind, column.meaning, cells));
+            let cells = ColumnCells::of(&rows, column.id);
+            columns.push(Column { cells, ..Column::new(name, kind, column.meaning, Vec::new()) });
         }
         columns.extend(mesh_errors::columns(points, &rows, assumed));
         columns.push(same_job::column(points));

@@ -10,7 +10,7 @@ use polars::prelude::{
 };
 use serde_json::json;
 
-use super::{Column, Table};
+use super::{Column, ColumnCells, Table};
 use crate::input::value::Value;
 use crate::job::row::CellType;
 
@@ -53,14 +53,24 @@ fn to_polars(column: &Column) -> PolarsResult<PolarsColumn> {
         CellType::Number => DataType::Float64,
         CellType::Text => DataType::String,
     };
-    let cells = column.cells.iter().map(|cell| match cell {
+    let of = |cells: &[AnyValue<'_>]| {
+        let series =
+            Series::from_any_values_and_dtype(column.name.as_str().into(), cells, &kind, true);
+        series.map(PolarsColumn::from)
+    };
+    match &column.cells {
+        // One cell until the column is written.
+        ColumnCells::Same(cell, rows) => Ok(of(&[any(cell)])?.new_from_index(0, *rows)),
+        cells => of(&cells.iter().map(any).collect::<Vec<_>>()),
+    }
+}
+
+fn any(cell: &Value) -> AnyValue<'_> {
+    match cell {
         Value::Null => AnyValue::Null,
         Value::Bool(value) => AnyValue::Boolean(*value),
         Value::Integer(value) => AnyValue::Int64(*value),
         Value::Number(value) => AnyValue::Float64(*value),
         Value::Text(value) => AnyValue::String(value),
-    });
-    let cells: Vec<AnyValue<'_>> = cells.collect();
-    let name = column.name.as_str().into();
-    Series::from_any_values_and_dtype(name, &cells, &kind, true).map(PolarsColumn::from)
+    }
 }

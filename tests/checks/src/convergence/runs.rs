@@ -97,11 +97,7 @@ pub(super) fn by_scene(all: &[Stored<'_>]) -> Vec<SceneRuns> {
         let label = label.collect::<Vec<_>>().join(" ");
         let entry = scenes.entry(key(scene));
         let entry = entry.or_insert_with(|| SceneRuns { runs: Vec::new(), label });
-        entry.runs.push(MeshRun {
-            scene: Scene::clone(scene),
-            features,
-            cells: cells.into_owned(),
-        });
+        entry.runs.push(MeshRun { scene: Scene::clone(scene), features, cells });
     }
     scenes.into_values().collect()
 }

@@ -61,6 +61,8 @@ const FAINT_OPACITY: f64 = 0.55;
 const ARROW: f64 = 4.2;
 /// Size of a marker, mm.
 const MARKER: f64 = 2.0;
+/// Distance of a marker from the last one like it below which it is left out, mm. Chosen: the two are one blot.
+const HIDDEN: f64 = 0.25;
 /// Number of markers along a line with sparse markers, at most.
 const SPARSE_MARKERS: f64 = 6.0;
 /// Distance of these markers along x, mm, at least. Chosen: with several lines they do not hide the data.
@@ -151,8 +153,16 @@ impl Line {
                 style::marker(page, position, self.series, Fill::Filled, 1.7);
             }
         }
+        let mut last: Option<(Position, Fill)> = None;
         for (point, fill) in &self.marks {
-            style::marker(page, self.place(frame, *point), self.series, *fill, MARKER);
+            let at @ [x, y] = self.place(frame, *point);
+            let is_hidden = last.is_some_and(|([last_x, last_y], like)| {
+                like == *fill && (x - last_x).abs() < HIDDEN && (y - last_y).abs() < HIDDEN
+            });
+            if !is_hidden {
+                style::marker(page, at, self.series, *fill, MARKER);
+                last = Some((at, *fill));
+            }
         }
         for point in &self.crosses {
             style::cross(page, self.place(frame, *point), &Stroke::solid(colour, 0.5), 2.6);
