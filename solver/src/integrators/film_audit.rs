@@ -102,7 +102,7 @@ impl StepAudit for FilmAudit {
         self.time = state.time;
         if let Some((monitor, topology)) = self.monitor.as_mut().zip(topology(system)) {
             monitor.test_block(topology);
-            monitor.intersection_counter.update(topology, &state.positions);
+            monitor.count_intersections(topology);
             check_passages(monitor, state.time)?;
         }
         if !self.motion.keeps_masses(system) {

@@ -5,7 +5,8 @@
 //! ```
 //!
 //! Symbols: p, q ends of the edge; n normal and a a node of the element. The pairs come from the
-//! monitor's search, at one frame.
+//! monitor's search, at one frame. Where a block of its steps ends at that frame, they are among those that no plane
+//! separates on the motion of the block.
 
 use nalgebra::Vector3;
 
@@ -58,6 +59,17 @@ impl IntersectionCounter {
     pub fn update(&mut self, topology: &Topology, positions: &Field) {
         self.tracker.advance(topology, &self.last, positions);
         self.tracker.find(topology, [&self.last, positions], &mut self.pairs);
+        self.count(topology, positions);
+    }
+
+    /// The same, where the pairs of elements without a common node that may intersect are among these.
+    pub fn update_among(&mut self, topology: &Topology, positions: &Field, elements: &[[u32; 2]]) {
+        self.tracker.advance(topology, &self.last, positions);
+        self.tracker.find_among(topology, positions, elements, &mut self.pairs);
+        self.count(topology, positions);
+    }
+
+    fn count(&mut self, topology: &Topology, positions: &Field) {
         self.last.copy_from(positions);
         let pairs = self.pairs[EDGE_ELEMENTS].iter();
         let found = pairs.filter(|pair| intersects(topology, positions, **pair));

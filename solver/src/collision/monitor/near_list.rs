@@ -66,6 +66,9 @@ pub struct NearList {
     within_until: f64,
     /// The pairs.
     pub pairs: ApartPairs,
+    /// Whether a plane separated the elements of a pair when it was last tested. If not, it is deferred by the gaps of its
+    /// primitives, between which an edge may stand in an element.
+    pub separated: Vec<bool>,
 }
 
 impl NearList {
@@ -85,6 +88,7 @@ impl NearList {
             remaining: 0,
             within_until: f64::NEG_INFINITY,
             pairs: ApartPairs::default(),
+            separated: Vec::new(),
         }
     }
 
@@ -152,6 +156,8 @@ impl NearList {
                 self.limit = (0.5 * self.reach).max(least);
                 continue;
             };
+            self.separated.clear();
+            self.separated.resize(self.pairs.pairs().len(), false);
             self.within_until = paths.bound + self.reach;
             self.served = 0;
             if (overlapping as f64) < FEW_PAIRS * most as f64 {

@@ -45,7 +45,6 @@ pub struct PairSearch {
     /// Primitives of the mesh.
     pub primitives: Primitives,
     boxes: BoxPairs,
-    elements: Vec<[u32; 2]>,
     pairs: Pairs,
 }
 
@@ -57,7 +56,6 @@ impl PairSearch {
             instruction_set,
             primitives: Primitives::new(topology),
             boxes: BoxPairs::default(),
-            elements: Vec::new(),
             pairs: Pairs::default(),
         }
     }
@@ -83,9 +81,16 @@ impl PairSearch {
         })
     }
 
-    /// Adds the pairs of primitives of elements without a common node that may meet on a motion to `close`.
-    pub fn find_distant(&mut self, topology: &Topology, motion: &Motion<'_>, close: &mut Pairs) {
-        let Self { kind, instruction_set, boxes, elements, .. } = self;
+    /// Replaces `elements` by the pairs of elements without a common node that may meet on a motion, and adds those of
+    /// their primitives to `close`.
+    pub fn find_distant(
+        &mut self,
+        topology: &Topology,
+        motion: &Motion<'_>,
+        elements: &mut Vec<[u32; 2]>,
+        close: &mut Pairs,
+    ) {
+        let Self { kind, instruction_set, boxes, .. } = self;
         let frames = [motion.from, motion.to];
         let frames = if *kind == QueryKind::Passages { &frames[..] } else { &frames[..1] };
         let half = 0.5 * motion.distance;
@@ -93,9 +98,7 @@ impl PairSearch {
         elements.clear();
         let (set, kind) = (*instruction_set, kind.elements());
         filter_pairs(set, kind, topology, &boxes.pairs, motion, elements);
-        let elements = core::mem::take(&mut self.elements);
-        self.find_primitives(topology, &elements, motion, close);
-        self.elements = elements;
+        self.find_primitives(topology, elements, motion, close);
     }
 
     /// Adds the pairs of primitives of these elements that may meet on a motion to `close`.

@@ -29,9 +29,10 @@ pub struct PairTracker {
     /// Pairs of elements that share a node.
     adjacent: ApartPairs,
     near: NearList,
-    // Scratch memory: numbers and elements of due pairs.
+    /// Pairs of elements without a common node that may meet on the last motion that was looked at.
+    pub elements: Vec<[u32; 2]>,
+    // Scratch memory: numbers of due pairs.
     due: Vec<u32>,
-    elements: Vec<[u32; 2]>,
     scratch: Scratch,
 }
 
@@ -53,8 +54,8 @@ impl PairTracker {
             paths: ElementPaths::new(topology.triangles.len()),
             adjacent,
             near: NearList::new(topology, positions),
-            due: Vec::new(),
             elements: Vec::new(),
+            due: Vec::new(),
             scratch: Scratch::default(),
         }
     }
@@ -81,8 +82,23 @@ impl PairTracker {
         if covered {
             self.find_near(topology, &motion, close);
         } else {
-            self.search.find_distant(topology, &motion, close);
+            self.search.find_distant(topology, &motion, &mut self.elements, close);
         }
+    }
+
+    /// Replaces `close` by the pairs that may meet at the last frame of [`Self::advance`], where the pairs of elements
+    /// without a common node that may are among these.
+    pub fn find_among(
+        &mut self,
+        topology: &Topology,
+        frame: &Field,
+        elements: &[[u32; 2]],
+        close: &mut Pairs,
+    ) {
+        clear(close);
+        let motion = motion_between(frame, frame, 0.0);
+        self.find_adjacent(topology, &motion, close);
+        self.search.find_primitives(topology, elements, &motion, close);
     }
 
     /// Replaces `close` by the pairs that may meet on the straight motion between two frames if every node deviates
@@ -97,7 +113,7 @@ impl PairTracker {
         clear(close);
         let motion = motion_between(from, to, reach);
         self.search.find_primitives(topology, self.adjacent.pairs(), &motion, close);
-        self.search.find_distant(topology, &motion, close);
+        self.search.find_distant(topology, &motion, &mut self.elements, close);
     }
 
     /// Tests the due pairs of elements that share a node: primitive by primitive, since such elements always touch.
@@ -109,7 +125,8 @@ impl PairTracker {
 
     /// Tests the due pairs of the near list: first the elements, then the primitives of those that no plane separates.
     fn find_near(&mut self, topology: &Topology, motion: &Motion<'_>, close: &mut Pairs) {
-        let Self { search, paths, near: NearList { pairs, .. }, due, elements, scratch, .. } = self;
+        let Self { search, paths, near: NearList { pairs, separated, .. }, .. } = self;
+        let Self { due, elements, scratch, .. } = self;
         let (paths, [gaps, _]) = (&paths.position, &mut scratch.gaps);
         pairs.due(paths, due);
         elements.clear();
@@ -122,11 +139,15 @@ impl PairTracker {
             let gap = gaps.next().copied().unwrap_or(f64::NAN);
             // Written so that NaN is close.
             let apart = gap > 0.0;
+            separated[*number as usize] = apart;
             if apart {
                 pairs.defer(*number, paths, gap);
             }
             !apart
         });
+        elements.clear();
+        let kept = pairs.pairs().iter().zip(&*separated).filter(|(_, separated)| !**separated);
+        elements.extend(kept.map(|(pair, _)| pair));
         scratch.test(search, topology, pairs, paths, due, motion, close);
     }
 }
