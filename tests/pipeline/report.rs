@@ -42,6 +42,10 @@ fn a_run_ends_with_a_page_of_what_is_stored() {
     assert!(!names.contains(&"peak_speed_error_below"));
     let jobs = |part: &str| found[part]["jobs"].as_array().unwrap().len();
     assert_eq!((jobs("curves"), jobs("shapes")), (2, 2));
+    let charts = found["charts"].as_array().unwrap();
+    assert!(
+        !charts.is_empty() && charts.iter().all(|c| c[1].as_str().unwrap().starts_with("<svg"))
+    );
     assert_eq!(found["shapes"]["meshes"].as_array().unwrap().len(), 1, "both have one mesh");
     // The same lines as the end of the run.
     let said = folder.stdout(&["run", "grid.json"]);

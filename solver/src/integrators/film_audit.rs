@@ -101,8 +101,7 @@ impl StepAudit for FilmAudit {
     fn complete(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
         self.time = state.time;
         if let Some((monitor, topology)) = self.monitor.as_mut().zip(topology(system)) {
-            monitor.test_block(topology);
-            monitor.count_intersections(topology);
+            monitor.test_to_sample(topology);
             check_passages(monitor, state.time)?;
         }
         if !self.motion.keeps_masses(system) {

@@ -109,24 +109,24 @@ impl Report<'_> {
             "limits": table::limits(study.result_limits()),
             "provenance": self.provenance()?,
         });
-        let mut parts = PAGE.to_owned();
+        let mut template = PAGE.to_owned();
         for (name, text) in PARTS {
-            parts = parts.replacen(&format!("{{{{{name}}}}}"), text, 1);
+            template = template.replacen(&format!("{{{{{name}}}}}"), text, 1);
         }
-        let (before, after) = parts.split_once("{{data}}").unwrap_or((&parts, ""));
+        let (head, tail) = template.split_once("{{data}}").expect("the page has a place for data");
         // The page of a large study takes as much memory as its table: it is written once, part after part.
-        let mut page = before.to_owned();
+        let mut page = head.to_owned();
         push(&mut page, &data);
         drop(data);
         add(&mut page, "charts", &json!(self.charts));
-        let mut budget = Budget { free: self.size - (page.len() + after.len()) as f64 };
+        let mut budget = Budget { free: self.size - (page.len() + tail.len()) as f64 };
         let curves = curves::curves(stored, &jobs, &mut budget);
         let shapes = shapes::shapes(stored, &jobs, &self.named(), &mut budget);
         let notes = notes(&curves, &shapes);
         add(&mut page, "curves", &curves);
         add(&mut page, "shapes", &shapes);
         add(&mut page, "notes", &json!(notes));
-        page.push_str(after);
+        page.push_str(tail);
         Ok((page, notes))
     }
 
@@ -192,10 +192,10 @@ impl fmt::Write for Inert<'_> {
 
 /// Appends JSON to a page.
 fn push(page: &mut String, json: &Json) {
-    write!(Inert(page), "{json}").expect("a text takes every text");
+    write!(Inert(page), "{json}").expect("writing to a string does not fail");
 }
 
-/// Adds a member to the object that ends a page.
+/// Adds a member to the object, not empty, that ends a page.
 fn add(page: &mut String, name: &str, json: &Json) {
     page.pop();
     page.extend([",\"", name, "\":"]);

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! Symbols: p, q ends of the edge; n normal and a a node of the element. The pairs come from the
-//! monitor's search, at one frame. Where a block of its steps ends at that frame, they are among those that no plane
-//! separates on the motion of the block.
+//! monitor's search, at one frame. Where a block of its steps ends at that frame, they are those of elements that no
+//! plane separates on the motion of the block, and of elements that share a node.
 
 use nalgebra::Vector3;
 
@@ -62,7 +62,7 @@ impl IntersectionCounter {
         self.count(topology, positions);
     }
 
-    /// The same, where the pairs of elements without a common node that may intersect are among these.
+    /// The same. Of elements without a common node only those in `elements` may intersect.
     pub fn update_among(&mut self, topology: &Topology, positions: &Field, elements: &[[u32; 2]]) {
         self.tracker.advance(topology, &self.last, positions);
         self.tracker.find_among(topology, positions, elements, &mut self.pairs);

@@ -143,9 +143,9 @@ impl TunnellingMonitor {
         self.recorded = 1;
     }
 
-    /// Counts the intersections at the end of the last tested block.
-    pub fn count_intersections(&mut self, topology: &Topology) {
-        debug_assert!(self.is_block_start(), "the last frame of the block is not tested");
+    /// Tests the steps recorded since the last test, and counts the intersections after the last of them.
+    pub fn test_to_sample(&mut self, topology: &Topology) {
+        self.test_block(topology);
         let Self { frames, tracker, intersection_counter, .. } = self;
         intersection_counter.update_among(topology, &frames[0], &tracker.elements);
     }
@@ -267,6 +267,29 @@ mod tests {
     }
 
     #[test]
+    fn an_edge_that_stays_in_an_element_is_counted_at_every_sample() {
+        // The nodes and edges of both elements stay apart, so no pair of them is due again.
+        let through = [v(0.2, 0.2, -1.0), v(0.2, 0.2, 1.0), v(0.3, 0.3, 1.0)];
+        let (topology, at_rest, moved) = scene(&through, v(1e-4, 0.0, 0.0));
+        let set = InstructionSet::detect();
+        let mut monitor =
+            TunnellingMonitor::new(MonitorSettings::FRAMES, &topology, &at_rest, 0, set);
+        let mut count = |frame: &Field| {
+            monitor.record_step(&topology, frame);
+            monitor.test_to_sample(&topology);
+            monitor.intersection_counter.count
+        };
+        let there = all_intersections(&topology, &at_rest).len() as u64;
+        assert!(there > 0);
+        for step in 0..40 {
+            assert_eq!(count(if step % 2 == 0 { &moved } else { &at_rest }), there, "step {step}");
+        }
+        // It leaves the element, and comes back.
+        let (_, _, away) = scene(&through, v(3.0, 0.0, 0.0));
+        assert_eq!((count(&away), count(&at_rest)), (0, there));
+    }
+
+    #[test]
     fn about_one_block_in_a_hundred_is_tested_step_by_step() {
         let close =
             (0..100_000).filter(|block| MonitorSettings::FRAMES.is_dense_block(*block)).count();
@@ -279,21 +302,27 @@ mod tests {
         fn a_run_misses_no_passage_and_no_intersection(
             positions in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 18),
             motions in prop::collection::vec(
-                (prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 18), 0_usize..4),
+                (prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 18), 0_usize..4, 0..3),
                 1..20,
             ),
+            block in 1..4_u32,
+            dense_block_period in prop::sample::select(vec![2, u64::MAX]),
         ) {
             let triangles =
                 [[0, 1, 2], [2, 1, 3], [4, 5, 6], [7, 8, 9], [10, 11, 12], [13, 14, 15], [13, 16, 17]];
             let topology = Topology::new(18, &triangles);
             let mut x: Vec<Vector3<f64>> = positions.into_iter().map(Vector3::from).collect();
-            // No block is tested step by step.
-            let settings = MonitorSettings { block: 1, dense_block_period: u64::MAX, seed: 1 };
+            let settings = MonitorSettings { block, dense_block_period, seed: 1 };
+            // Each step is a block, and none is tested step by step.
+            let each = MonitorSettings { block: 1, dense_block_period: u64::MAX, seed: 1 };
             let start = Field::of(&x);
             let mut monitor =
                 TunnellingMonitor::new(settings, &topology, &start, 0, InstructionSet::detect());
+            let mut each =
+                TunnellingMonitor::new(each, &topology, &start, 0, InstructionSet::detect());
+            let mut searched = monitor.intersection_counter.clone();
             let mut expected = 0;
-            for (motion, size) in motions {
+            for (motion, size, look) in motions {
                 let from = Field::of(&x);
                 // From film that hardly moves, which has a near list, to film that moves far; with drift.
                 let size = [0.2, 0.02, 0.004, 0.001][size];
@@ -302,13 +331,19 @@ mod tests {
                 }
                 let to = Field::of(&x);
                 expected += all_passages(&topology, &from, &to).len() as u64;
-                monitor.record_step(&topology, &to);
-                prop_assert_eq!(monitor.passages, expected);
+                each.record_step(&topology, &to);
+                prop_assert_eq!(each.passages, expected);
                 let all = all_intersections(&topology, &to).len() as u64;
-                let mut searched = monitor.intersection_counter.clone();
                 searched.update(&topology, &to);
-                monitor.count_intersections(&topology);
-                prop_assert_eq!([searched.count, monitor.intersection_counter.count], [all; 2]);
+                prop_assert_eq!(searched.count, all);
+                // Some frames are samples, and some of these lie within an implicit step.
+                monitor.record_step(&topology, &to);
+                match look {
+                    0 => monitor.test_to_sample(&topology),
+                    1 => monitor.intersection_counter.update(&topology, &to),
+                    _ => continue,
+                }
+                prop_assert_eq!(monitor.intersection_counter.count, all);
             }
         }
     }
@@ -327,7 +362,7 @@ mod tests {
                     monitor.record_step(&topology, frame);
                 }
                 monitor.test_block(&topology);
-                monitor.count_intersections(&topology);
+                monitor.test_to_sample(&topology);
                 monitor.intersection_counter.update(&topology, &broken);
                 // Film with numbers is tested again.
                 let before = monitor.passages;

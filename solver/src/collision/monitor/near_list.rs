@@ -66,8 +66,8 @@ pub struct NearList {
     within_until: f64,
     /// The pairs.
     pub pairs: ApartPairs,
-    /// Whether a plane separated the elements of a pair when it was last tested. If not, it is deferred by the gaps of its
-    /// primitives, between which an edge may stand in an element.
+    /// Whether a plane separated the elements of each pair at its last test. A pair that none separated waits by the gaps of
+    /// its nodes and edges, which can be positive while an edge stands in an element.
     pub separated: Vec<bool>,
 }
 

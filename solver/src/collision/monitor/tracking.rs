@@ -29,7 +29,7 @@ pub struct PairTracker {
     /// Pairs of elements that share a node.
     adjacent: ApartPairs,
     near: NearList,
-    /// Pairs of elements without a common node that may meet on the last motion that was looked at.
+    /// Pairs of elements without a common node that no plane separated on the last motion, or when they were last due.
     pub elements: Vec<[u32; 2]>,
     // Scratch memory: numbers of due pairs.
     due: Vec<u32>,
@@ -86,8 +86,8 @@ impl PairTracker {
         }
     }
 
-    /// Replaces `close` by the pairs that may meet at the last frame of [`Self::advance`], where the pairs of elements
-    /// without a common node that may are among these.
+    /// Replaces `close` by the pairs that may meet at the last frame of [`Self::advance`]. Of elements without a common
+    /// node only those in `elements` may.
     pub fn find_among(
         &mut self,
         topology: &Topology,

@@ -22,7 +22,7 @@ pub(super) fn columns(
     let errors = |(point, cells): (&PointRow<'_>, &Cells)| {
         let mut row = RowErrors::of(&point.point.job.scene, cells, ranges);
         reasons.push(row.reason.take().map_or(Value::Null, Value::Text));
-        // A large study is one of a model whose rows have none.
+        // Most large studies use a model without mesh, whose rows have none: those take no memory.
         let has_any = row.errors.iter().chain(&row.assumed).any(Option::is_some);
         has_any.then(|| Box::new(row))
     };

@@ -21,7 +21,7 @@ const FORMAT: &str = "billow-table";
 /// Version of the format.
 const VERSION: u64 = 1;
 
-/// The bytes of a table's file. Each column is dropped once it is converted: a large table needs the memory.
+/// The bytes of a table's file. A column is dropped once it is converted: the cells of a large table need the memory.
 ///
 /// # Errors
 /// The message of polars.

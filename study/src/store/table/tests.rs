@@ -98,6 +98,19 @@ fn a_table_written_twice_has_the_same_bytes_and_every_cell_counts() {
 }
 
 #[test]
+fn cells_of_measures_are_those_of_the_records_until_one_is_set() {
+    let table = built();
+    let mut volumes = cells(&table, "final_volume").clone();
+    let ColumnCells::Of(rows, ColumnId::FinalVolume) = &volumes else { panic!("{volumes:?}") };
+    let ColumnCells::Of(others, _) = cells(&table, "status") else { panic!("not shared") };
+    assert!(Arc::ptr_eq(rows, others));
+    let before: Vec<Value> = volumes.iter().cloned().collect();
+    volumes[1] = Value::Number(0.5);
+    assert_eq!((&volumes[0], &volumes[1]), (&before[0], &Value::Number(0.5)));
+    assert_eq!(*cells(&table, "final_volume"), before);
+}
+
+#[test]
 fn cells_that_are_the_same_in_every_row_are_kept_once() {
     let cells = |values: &[f64]| -> ColumnCells {
         values.iter().map(|value| Value::Number(*value)).collect()

@@ -61,8 +61,9 @@ const FAINT_OPACITY: f64 = 0.55;
 const ARROW: f64 = 4.2;
 /// Size of a marker, mm.
 const MARKER: f64 = 2.0;
-/// Distance of a marker from the last one like it below which it is left out, mm. Chosen: the two are one blot.
-const HIDDEN: f64 = 0.25;
+/// Distance along both axes from the marker drawn last below which one of the same fill is left out, mm. Chosen: the two
+/// look like one.
+const LEAST_APART: f64 = 0.25;
 /// Number of markers along a line with sparse markers, at most.
 const SPARSE_MARKERS: f64 = 6.0;
 /// Distance of these markers along x, mm, at least. Chosen: with several lines they do not hide the data.
@@ -157,7 +158,9 @@ impl Line {
         for (point, fill) in &self.marks {
             let at @ [x, y] = self.place(frame, *point);
             let is_hidden = last.is_some_and(|([last_x, last_y], like)| {
-                like == *fill && (x - last_x).abs() < HIDDEN && (y - last_y).abs() < HIDDEN
+                like == *fill
+                    && (x - last_x).abs() < LEAST_APART
+                    && (y - last_y).abs() < LEAST_APART
             });
             if !is_hidden {
                 style::marker(page, at, self.series, *fill, MARKER);

@@ -94,6 +94,20 @@ fn numbers_of_adjacent_panels_do_not_overlap() {
     check::figure(&plots(range, &[0.0], 2, 2, 1).svg());
 }
 
+#[test]
+fn markers_on_each_other_are_drawn_once() {
+    let mut plots = plots(axis(0.0, 1.0), &[1.0], 1, 1, 1);
+    let line = &mut plots.panels[0].lines[0];
+    let marks = (0..20_000).map(|k| ([f64::from(k) / 20_000.0, 1.0], Fill::Filled));
+    line.marks = marks.collect();
+    let drawn = |plots: &Plots| plots.svg().matches("<circle").count();
+    let many = drawn(&plots);
+    assert!((200..1_000).contains(&many), "{many}");
+    // One of another look among them is not hidden.
+    plots.panels[0].lines[0].marks[10_000].1 = Fill::Open;
+    assert!(drawn(&plots) > many);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
     #[test]
