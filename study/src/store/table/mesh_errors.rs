@@ -18,6 +18,7 @@ pub(super) fn columns(
     rows: &[Cells],
     ranges: &AssumedRanges,
 ) -> Vec<Column> {
+    const NONE: &RowErrors = &RowErrors::NONE;
     let mut reasons = Vec::with_capacity(rows.len());
     let errors = |(point, cells): (&PointRow<'_>, &Cells)| {
         let mut row = RowErrors::of(&point.point.job.scene, cells, ranges);
@@ -33,11 +34,9 @@ pub(super) fn columns(
         let kind = (CellType::Number, promised.measure.column().unit);
         for (part, (name, meaning)) in promised.columns().into_iter().enumerate() {
             let cells = all.iter().map(|row| {
-                let of_row = |of: fn(&RowErrors) -> &[Option<[f64; 2]>]| {
-                    let sides = row.as_ref().and_then(|row| of(row)[index]);
-                    sides.map_or([None; 2], |sides| sides.map(Some))
-                };
-                let (errors, assumed) = (of_row(|row| &row.errors), of_row(|row| &row.assumed));
+                let row = row.as_deref().unwrap_or(NONE);
+                let [errors, assumed] = [row.errors[index], row.assumed[index]]
+                    .map(|sides| sides.map_or([None; 2], |sides| sides.map(Some)));
                 number([errors[0], errors[1], assumed[0], assumed[1]][part])
             });
             columns.push(Column::new(name, kind, meaning, cells.collect()));
