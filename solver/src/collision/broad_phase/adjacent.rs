@@ -130,28 +130,33 @@ impl PendingAdjacentPairs {
         }
     }
 
-    /// Removes every pair that is due when the film around each node approaches by `reach` (m) more,
-    /// and calls `visit` with its node, its number and its candidates of each kind.
+    /// Number of nodes of the film.
+    pub fn nodes(&self) -> usize {
+        self.first_due.len()
+    }
+
+    /// Removes every pair of a node that is due when the film around the node approaches by `reach` (m) more, and calls
+    /// `visit` with its number and its candidates of each kind.
+    #[inline]
     pub fn pop_due(
         &mut self,
         pairs: &AdjacentPairs,
+        node: usize,
         reach: f64,
-        mut visit: impl FnMut(usize, usize, [&[[u32; 2]]; 2]),
+        mut visit: impl FnMut(usize, [&[[u32; 2]]; 2]),
     ) {
-        let limits = self.approach_bounds.iter().map(|bound| bound + reach);
-        for (node, (first_due, limit)) in self.first_due.iter_mut().zip(limits).enumerate() {
-            if *first_due > limit {
-                continue;
-            }
-            *first_due = f64::INFINITY;
-            for pair in pairs.starts[node]..pairs.starts[node + 1] {
-                let due = self.due[pair];
-                if due > limit {
-                    *first_due = first_due.min(due);
-                } else {
-                    self.due[pair] = f64::INFINITY;
-                    visit(node, pair, pairs.candidates_of(pair));
-                }
+        let (first_due, limit) = (&mut self.first_due[node], self.approach_bounds[node] + reach);
+        if *first_due > limit {
+            return;
+        }
+        *first_due = f64::INFINITY;
+        for pair in pairs.starts[node]..pairs.starts[node + 1] {
+            let due = self.due[pair];
+            if due > limit {
+                *first_due = first_due.min(due);
+            } else {
+                self.due[pair] = f64::INFINITY;
+                visit(pair, pairs.candidates_of(pair));
             }
         }
     }
@@ -220,20 +225,22 @@ mod tests {
                 }
             }
             let mut visited: [BTreeSet<[u32; 2]>; 2] = Default::default();
-            pending.pop_due(&pairs, 0.0, |_, _, candidates| {
-                for (visited, candidates) in visited.iter_mut().zip(candidates) {
-                    for pair in candidates {
-                        assert!(visited.insert(*pair), "{pair:?} twice");
+            for node in 0..pending.nodes() {
+                pending.pop_due(&pairs, node, 0.0, |_, candidates| {
+                    for (visited, candidates) in visited.iter_mut().zip(candidates) {
+                        for pair in candidates {
+                            assert!(visited.insert(*pair), "{pair:?} twice");
+                        }
                     }
-                }
-            });
+                });
+            }
             prop_assert_eq!(visited, adjacent_candidates(&hierarchy));
             // A pending pair is not visited before it is due.
             pending.push(0, 0, 1.0);
             let mut visits = 0_u32;
-            pending.pop_due(&pairs, 0.5, |_, _, _| visits += 1);
+            pending.pop_due(&pairs, 0, 0.5, |_, _| visits += 1);
             prop_assert_eq!(visits, 0);
-            pending.pop_due(&pairs, 1.0, |_, _, _| visits += 1);
+            pending.pop_due(&pairs, 0, 1.0, |_, _| visits += 1);
             prop_assert_eq!(visits, 1);
         }
     }

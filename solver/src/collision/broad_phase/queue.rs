@@ -106,6 +106,10 @@ impl PairQueue {
     #[expect(clippy::cast_possible_truncation, reason = "pairs are counted with 32 bits")]
     fn push_to_new_block(&mut self, slot: usize, pair: [u32; 2]) {
         let new = if self.free == NONE {
+            // Hundreds of queues: twice the memory at each growth would leave a quarter of all unused.
+            if self.blocks.len() == self.blocks.capacity() {
+                self.blocks.reserve_exact(self.blocks.len() / 4 + 1);
+            }
             self.blocks.push(Block { pairs: [[0; 2]; BLOCK], next: NONE });
             self.blocks.len() as u32 - 1
         } else {

@@ -221,7 +221,7 @@ impl CandidateScheduler {
     /// farther apart are pushed again; the others are refined into pairs of children.
     ///
     /// Calls `resolve` whenever [`MAX_BATCH`] candidates are collected, and at the end. A batch ends between two
-    /// pairs of clusters, so each queue gets its pairs in the same order whatever the batches.
+    /// pairs of clusters or two nodes, so each queue gets its pairs in the same order whatever the batches.
     fn refine(
         &mut self,
         mesh: &CollisionMesh,
@@ -235,20 +235,29 @@ impl CandidateScheduler {
         self.kdops.fit(&mesh.hierarchy, positions);
         for clusters in 0..self.queues.len() {
             self.refine_clusters(mesh, clusters, reach, radius, bound_factor);
-            if self.candidates.iter().map(Vec::len).sum::<usize>() > MAX_BATCH {
-                resolve(self);
-                self.clear_due();
-            }
+            self.resolve_batch(&mut resolve);
         }
-        let Self { adjacent, due_pairs, candidates, .. } = self;
-        adjacent.pop_due(&mesh.adjacent_pairs, reach, |node, pair, adjacent| {
-            for (candidates, adjacent) in candidates.iter_mut().zip(adjacent) {
-                candidates.extend_from_slice(adjacent);
-            }
-            let ends = [candidates[0].len(), candidates[1].len()];
-            due_pairs.push((PendingPair::Adjacent { pair, node }, ends));
-        });
+        for node in 0..self.adjacent.nodes() {
+            let Self { adjacent, due_pairs, candidates, .. } = &mut *self;
+            adjacent.pop_due(&mesh.adjacent_pairs, node, reach, |pair, adjacent| {
+                for (candidates, adjacent) in candidates.iter_mut().zip(adjacent) {
+                    candidates.extend_from_slice(adjacent);
+                }
+                let ends = [candidates[0].len(), candidates[1].len()];
+                due_pairs.push((PendingPair::Adjacent { pair, node }, ends));
+            });
+            self.resolve_batch(&mut resolve);
+        }
         resolve(self);
+    }
+
+    /// Calls `resolve` if [`MAX_BATCH`] candidates are collected, and forgets them.
+    #[inline]
+    fn resolve_batch(&mut self, resolve: &mut impl FnMut(&mut Self)) {
+        if self.candidates[0].len() + self.candidates[1].len() > MAX_BATCH {
+            resolve(self);
+            self.clear_due();
+        }
     }
 
     /// Forgets the due pairs.

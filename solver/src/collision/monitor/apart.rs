@@ -29,6 +29,7 @@ impl ApartPairs {
         let Self { pairs, due, starts, limits } = self;
         pairs.clear();
         let result = fill(pairs);
+        pairs.shrink_to_fit();
         pairs.sort_unstable();
         starts.clear();
         starts.resize(elements + 1, 0);

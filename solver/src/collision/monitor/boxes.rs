@@ -29,6 +29,9 @@ const CELL_WIDTH: f64 = 3.0;
 /// Largest number of cells along an axis. Chosen: it bounds memory where boxes differ much in size.
 const MAX_CELLS: usize = 256;
 
+/// Number of pairs that are tested together. Chosen: small against the cache, large against a group of lanes.
+pub const BATCH: usize = 4096;
+
 /// Ends of boxes along one axis, one entry for each box: lower ends and upper ends, m.
 type Ends = [Vec<f32>; 2];
 
@@ -49,8 +52,8 @@ pub struct BoxPairs {
     entries: Vec<u32>,
     /// The elements of one cell.
     cell: Cell,
-    /// The pairs found last, the lower number first.
-    pub pairs: Vec<[u32; 2]>,
+    /// Pairs that have not been given away.
+    pairs: Vec<[u32; 2]>,
 }
 
 /// A grid over two axes.
@@ -81,10 +84,11 @@ fn ordered(x: f32) -> u32 {
 
 impl BoxPairs {
     /// Finds all pairs of elements that share no node and whose boxes over these frames overlap when
-    /// each is widened by `reach` (m). Several frames must have the same nodes. The mean motion of the
-    /// film from the first frame to each other one is taken off.
+    /// each is widened by `reach` (m), and gives them to `take` in batches, the lower number of a pair first.
+    /// Several frames must have the same nodes. The mean motion of the film from the first frame to each
+    /// other one is taken off.
     ///
-    /// Ends and returns `false` once there are more than `most` pairs.
+    /// Returns the number of pairs; ends and returns `None` once there are more than `most`.
     pub fn find(
         &mut self,
         instruction_set: InstructionSet,
@@ -92,8 +96,10 @@ impl BoxPairs {
         frames: &[&Field],
         reach: f64,
         most: usize,
-    ) -> bool {
+        mut take: impl FnMut(&[[u32; 2]]),
+    ) -> Option<usize> {
         self.pairs.clear();
+        let mut taken = 0;
         self.fit(instruction_set, triangles, frames, reach);
         let ranges =
             self.boxes.each_ref().map(|[lower, upper]| range_of(instruction_set, lower, upper));
@@ -115,12 +121,18 @@ impl BoxPairs {
                 let here = [column, row].map(|k| u16::try_from(k).unwrap_or(u16::MAX));
                 cell.fill(members, ends, covered, here);
                 sweep_cell(instruction_set, cell, triangles, pairs);
-                if pairs.len() > most {
-                    return false;
+                if taken + pairs.len() > most {
+                    return None;
+                }
+                if pairs.len() >= BATCH {
+                    taken += pairs.len();
+                    take(pairs);
+                    pairs.clear();
                 }
             }
         }
-        true
+        take(pairs);
+        Some(taken + pairs.len())
     }
 
     /// Fits the boxes to the frames.

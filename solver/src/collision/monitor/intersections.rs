@@ -45,13 +45,19 @@ pub struct IntersectionCounter {
 }
 
 impl IntersectionCounter {
-    /// Counts the intersections at these positions (m).
-    pub fn new(topology: &Topology, positions: &Field, instruction_set: InstructionSet) -> Self {
+    /// Counts the intersections at these positions (m). Of elements without a common node only those in `elements` may
+    /// intersect.
+    pub fn new(
+        topology: &Topology,
+        positions: &Field,
+        elements: &[[u32; 2]],
+        instruction_set: InstructionSet,
+    ) -> Self {
         let kind = QueryKind::Intersections;
         let tracker = PairTracker::new(kind, topology, positions, instruction_set);
         let (last, pairs) = (positions.clone(), Pairs::default());
         let mut counter = Self { tracker, last, pairs, count: 0 };
-        counter.update(topology, positions);
+        counter.update_among(topology, positions, elements);
         counter
     }
 
@@ -62,7 +68,7 @@ impl IntersectionCounter {
         self.count(topology, positions);
     }
 
-    /// The same. Of elements without a common node only those in `elements` may intersect.
+    /// The same as [`Self::update`]. Of elements without a common node only those in `elements` may intersect.
     pub fn update_among(&mut self, topology: &Topology, positions: &Field, elements: &[[u32; 2]]) {
         self.tracker.advance(topology, &self.last, positions);
         self.tracker.find_among(topology, positions, elements, &mut self.pairs);
@@ -154,7 +160,8 @@ pub(super) mod tests {
             let all = all_intersections(&topology, &x);
             prop_assert_eq!(&intersections(&topology, &x), &all);
             for set in InstructionSet::ALL {
-                let counter = IntersectionCounter::new(&topology, &x, set);
+                let mut counter = IntersectionCounter::new(&topology, &x, &[], set);
+                counter.update(&topology, &x);
                 prop_assert_eq!(counter.count, all.len() as u64);
             }
         }

@@ -81,6 +81,8 @@ impl TunnellingMonitor {
         // Every pair is due here, so that the first block costs no more than the others.
         let mut close = Pairs::default();
         tracker.find(topology, [positions; 2], &mut close);
+        let intersection_counter =
+            IntersectionCounter::new(topology, positions, &tracker.elements, instruction_set);
         Self {
             settings,
             block_start: steps,
@@ -90,7 +92,7 @@ impl TunnellingMonitor {
             pairs: Pairs::default(),
             close,
             found: Vec::new(),
-            intersection_counter: IntersectionCounter::new(topology, positions, instruction_set),
+            intersection_counter,
             passages: 0,
             first_passage: None,
         }
@@ -321,6 +323,7 @@ mod tests {
             let mut each =
                 TunnellingMonitor::new(each, &topology, &start, 0, InstructionSet::detect());
             let mut searched = monitor.intersection_counter.clone();
+            prop_assert_eq!(searched.count, all_intersections(&topology, &start).len() as u64);
             let mut expected = 0;
             for (motion, size, look) in motions {
                 let from = Field::of(&x);

@@ -7,7 +7,7 @@
 //! Every node may also deviate from its straight motion by a reach. The search has no history: the same
 //! frames give the same pairs. It shares no code with the broad phase and the distances of contact.
 
-use super::boxes::BoxPairs;
+use super::boxes::{BATCH, BoxPairs};
 use super::primitives::{MAX_CROSSING_DISTANCE, Primitives};
 use super::query::{Pairs, QueryKind};
 use super::separation::{Motion, PairTest, filter_pairs};
@@ -18,10 +18,6 @@ use crate::platform::simd::InstructionSet;
 /// Distance at which a pair counts as apart, over the largest distance of a node from the origin: the
 /// tolerance of crossing edges, times the sum of their lengths. It also covers rounding.
 const APART_PER_SIZE: f64 = 4.0 * MAX_CROSSING_DISTANCE;
-
-/// Pairs of elements whose primitives are tested together. Chosen: their memory is small against that of
-/// a film.
-pub const BATCH: usize = 4096;
 
 /// The motion between two frames with this reach (m) of every node. For the motion around one frame, give it twice.
 pub fn motion_between<'a>(from: &'a Field, to: &'a Field, reach: f64) -> Motion<'a> {
@@ -74,11 +70,14 @@ impl PairSearch {
         let Self { instruction_set, boxes, .. } = self;
         let motion = motion_between(frame, frame, reach);
         let (triangles, half) = (&topology.triangles, 0.5 * motion.distance);
-        boxes.find(*instruction_set, triangles, &[frame], half, most).then(|| {
-            let kind = PairTest::ElementsNow;
-            filter_pairs(*instruction_set, kind, topology, &boxes.pairs, &motion, found);
-            boxes.pairs.len()
-        })
+        let (set, kind, before) = (*instruction_set, PairTest::ElementsNow, found.len());
+        let overlapping = boxes.find(set, triangles, &[frame], half, most, |pairs| {
+            filter_pairs(set, kind, topology, pairs, &motion, found);
+        });
+        if overlapping.is_none() {
+            found.truncate(before);
+        }
+        overlapping
     }
 
     /// Replaces `elements` by the pairs of elements without a common node that may meet on a motion, and adds those of
@@ -94,10 +93,11 @@ impl PairSearch {
         let frames = [motion.from, motion.to];
         let frames = if *kind == QueryKind::Passages { &frames[..] } else { &frames[..1] };
         let half = 0.5 * motion.distance;
-        boxes.find(*instruction_set, &topology.triangles, frames, half, usize::MAX);
         elements.clear();
         let (set, kind) = (*instruction_set, kind.elements());
-        filter_pairs(set, kind, topology, &boxes.pairs, motion, elements);
+        boxes.find(set, &topology.triangles, frames, half, usize::MAX, |pairs| {
+            filter_pairs(set, kind, topology, pairs, motion, elements);
+        });
         self.find_primitives(topology, elements, motion, close);
     }
 

@@ -53,17 +53,19 @@ fn min<L: Wide>(a: L, b: L) -> L {
     -((-a).max(-b))
 }
 
-/// The smallest n·p over the first `COUNT` points.
+/// The smallest and the largest n·p over the first `COUNT` points.
 #[inline(always)]
-fn lowest<L: Wide, const COUNT: usize>(normal: Vectors<L>, points: &[Vectors<L>; 3]) -> L {
-    let mut lowest = normal.dot(points[0]);
+fn extent<L: Wide, const COUNT: usize>(normal: Vectors<L>, points: &[Vectors<L>; 3]) -> [L; 2] {
+    let first = normal.dot(points[0]);
+    let mut extent = [first; 2];
     for k in 1..COUNT {
-        lowest = min(lowest, normal.dot(points[k]));
+        let along = normal.dot(points[k]);
+        extent = [min(extent[0], along), extent[1].max(along)];
     }
-    lowest
+    extent
 }
 
-/// The smallest n·(p − q) over both frames, less |n| d; over |n| if `UNIT`.
+/// The smallest n·(p − q) over both frames, less |n| d; over |n| if `UNIT`. The larger of those of n and −n if `BOTH`.
 #[inline(always)]
 fn margin<
     L: Wide,
@@ -71,18 +73,22 @@ fn margin<
     const SECOND: usize,
     const FRAMES: usize,
     const UNIT: bool,
+    const BOTH: bool,
 >(
     normal: Vectors<L>,
     first: &Corners<L>,
     second: &Corners<L>,
     distance: L,
 ) -> L {
-    let mut least =
-        lowest::<L, FIRST>(normal, &first[0]) + lowest::<L, SECOND>(-normal, &second[0]);
-    if FRAMES == 2 {
-        let last = lowest::<L, FIRST>(normal, &first[1]) + lowest::<L, SECOND>(-normal, &second[1]);
-        least = min(least, last);
+    // Of n, then of −n.
+    let mut least = [L::splat(0.0); 2];
+    for frame in 0..FRAMES {
+        let [low, high] = extent::<L, FIRST>(normal, &first[frame]);
+        let [other_low, other_high] = extent::<L, SECOND>(normal, &second[frame]);
+        let gaps = [low - other_high, other_low - high];
+        least = if frame == 0 { gaps } else { [min(least[0], gaps[0]), min(least[1], gaps[1])] };
     }
+    let least = if BOTH { least[0].max(least[1]) } else { least[0] };
     let length = normal.dot(normal).sqrt();
     if UNIT {
         // A normal of length 0 separates nothing.
@@ -119,30 +125,29 @@ fn largest_margin<
     // Centroids times the product of the numbers of nodes.
     let between = sum::<L, FIRST>(&first[0]).scale(L::splat(SECOND as f64))
         - sum::<L, SECOND>(&second[0]).scale(L::splat(FIRST as f64));
-    let mut largest = margin::<L, FIRST, SECOND, FRAMES, UNIT>(between, first, second, distance);
+    let mut largest =
+        margin::<L, FIRST, SECOND, FRAMES, UNIT, false>(between, first, second, distance);
     if SECOND == 3 {
         let normal = (e - d).cross(f - d);
         largest = largest
-            .max(margin::<L, FIRST, SECOND, FRAMES, UNIT>(normal, first, second, distance))
-            .max(margin::<L, FIRST, SECOND, FRAMES, UNIT>(-normal, first, second, distance));
+            .max(margin::<L, FIRST, SECOND, FRAMES, UNIT, true>(normal, first, second, distance));
     }
     if FIRST == 3 {
         let normal = (b - a).cross(c - a);
         largest = largest
-            .max(margin::<L, FIRST, SECOND, FRAMES, UNIT>(normal, first, second, distance))
-            .max(margin::<L, FIRST, SECOND, FRAMES, UNIT>(-normal, first, second, distance));
+            .max(margin::<L, FIRST, SECOND, FRAMES, UNIT, true>(normal, first, second, distance));
     }
     if FIRST == 2 {
         let edge = b - a;
         let along = edge.dot(between).over(edge.dot(edge));
         let across = between - edge.scale(along);
-        largest =
-            largest.max(margin::<L, FIRST, SECOND, FRAMES, UNIT>(across, first, second, distance));
+        largest = largest
+            .max(margin::<L, FIRST, SECOND, FRAMES, UNIT, false>(across, first, second, distance));
         if SECOND == 2 {
             let normal = edge.cross(e - d);
-            largest = largest
-                .max(margin::<L, FIRST, SECOND, FRAMES, UNIT>(normal, first, second, distance))
-                .max(margin::<L, FIRST, SECOND, FRAMES, UNIT>(-normal, first, second, distance));
+            largest = largest.max(margin::<L, FIRST, SECOND, FRAMES, UNIT, true>(
+                normal, first, second, distance,
+            ));
         }
     }
     largest

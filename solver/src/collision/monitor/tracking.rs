@@ -10,11 +10,12 @@
 //! The pairs found are those that may meet. Whether they do is decided elsewhere, from positions alone.
 
 use super::apart::ApartPairs;
+use super::boxes::BATCH;
 use super::near_list::NearList;
 use super::paths::{ElementPaths, Paths};
 use super::primitives::adjacent_elements;
 use super::query::{Gaps, Pairs, QueryKind};
-use super::search::{BATCH, PairSearch, clear, motion_between};
+use super::search::{PairSearch, clear, motion_between};
 use super::separation::{Motion, measure_pairs};
 use crate::geometry::field::Field;
 use crate::geometry::topology::Topology;
@@ -47,7 +48,6 @@ impl PairTracker {
         let mut adjacent = ApartPairs::default();
         adjacent.replace(topology.triangles.len(), |pairs| {
             adjacent_elements(topology, |pair| pairs.push(pair));
-            pairs.shrink_to_fit();
         });
         Self {
             search: PairSearch::new(kind, topology, instruction_set),

@@ -52,10 +52,14 @@ fn check(triangles: &[[u32; 3]], frames: &[&Field], reach: f64) {
         let mut search = BoxPairs::default();
         // The second search uses memory of the first.
         for _ in 0..2 {
-            assert!(search.find(set, triangles, frames, reach, usize::MAX));
-            let mut found = search.pairs.clone();
+            let mut found = Vec::new();
+            let count = search
+                .find(set, triangles, frames, reach, usize::MAX, |pairs| {
+                    found.extend_from_slice(pairs);
+                })
+                .unwrap();
+            assert_eq!(found.len(), count);
             found.sort_unstable();
-            let count = found.len();
             found.dedup();
             assert_eq!(found.len(), count, "a pair twice");
             let missing: Vec<_> = all_pairs(triangles, frames, reach)
@@ -117,23 +121,41 @@ fn positions_without_meaning_neither_stop_nor_panic() {
                 frame.set(node, Vector3::new(second, 0.1, first));
             }
             let mut search = BoxPairs::default();
-            search.find(InstructionSet::detect(), &triangles, &[&frame, &frame], 0.1, 100);
+            search.find(InstructionSet::detect(), &triangles, &[&frame, &frame], 0.1, 100, |_| ());
         }
     }
-    let mut search = BoxPairs::default();
-    search.find(InstructionSet::detect(), &[], &[&Field::zeros(0)], 0.0, 0);
-    search.find(InstructionSet::detect(), &[[0, 1, 2]], &[&Field::zeros(3)], 0.0, 0);
-    assert!(search.pairs.is_empty());
+    let find = |triangles: &[[u32; 3]], nodes: usize| {
+        let (mut search, frame) = (BoxPairs::default(), Field::zeros(nodes));
+        search.find(InstructionSet::detect(), triangles, &[&frame], 0.0, 0, |_| ())
+    };
+    assert_eq!(find(&[], 0), Some(0));
+    assert_eq!(find(&[[0, 1, 2]], 3), Some(0));
 }
 
 #[test]
-fn a_search_with_too_many_pairs_ends() {
-    // Twenty elements at one place, of which no two share a node.
-    let triangles: Vec<[u32; 3]> = (0..20).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
-    let points: Vec<_> = (0..60).map(|k| Vector3::ith(k % 3, 1.0)).collect();
+fn pairs_come_in_batches_and_a_search_with_too_many_ends() {
+    // Elements of which no two share a node: a hundred at each of nine places.
+    let triangles: Vec<[u32; 3]> = (0..900).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    let points: Vec<_> = (0..2700)
+        .map(|k| {
+            Vector3::ith(k % 3, 1.0) * 0.1
+                + Vector3::new((k / 900) as f64, (k / 300 % 3) as f64, 0.0)
+        })
+        .collect();
     let (set, frame) = (InstructionSet::detect(), Field::of(&points));
     let mut search = BoxPairs::default();
-    assert!(!search.find(set, &triangles, &[&frame], 0.0, 189));
-    assert!(search.find(set, &triangles, &[&frame], 0.0, 190));
-    assert_eq!(search.pairs.len(), 190);
+    let (mut batches, mut given) = (0, 0);
+    let mut find = |most: usize| {
+        search.find(set, &triangles, &[&frame], 0.0, most, |pairs| {
+            batches += 1;
+            given += pairs.len();
+        })
+    };
+    let all = 9 * 100 * 99 / 2;
+    assert_eq!(find(all), Some(all));
+    assert_eq!(find(all - 1), None);
+    assert_eq!(find(1), None);
+    // The second search gave all places but one before it ended, the third none.
+    assert!(batches > 9, "{batches}");
+    assert_eq!(given, all + all / 9 * 8);
 }
