@@ -14,9 +14,10 @@
 //! them due in almost every query. The film around one node moves together far more than the film of
 //! a whole cluster.
 
+use nalgebra::Vector3;
+
 use super::hierarchy::Hierarchy;
 use super::query::{Candidates, push_candidates};
-use crate::geometry::field::Field;
 
 /// Factor on a bound that covers rounding. Chosen: far above the relative error of a norm (about
 /// 1e-15), far below any effect on cost.
@@ -110,13 +111,12 @@ impl PendingAdjacentPairs {
         self.approach_bounds.fill(0.0);
     }
 
-    /// Adds the motion between two positions of all nodes to the approach so far; `edges`: the nodes of
-    /// each edge.
-    pub fn add_motion(&mut self, edges: &[[u32; 2]], from: &Field, to: &Field) {
+    /// Adds these displacements of all nodes (m) to the approach so far; `edges`: the nodes of each edge.
+    pub fn add_motion(&mut self, edges: &[[u32; 2]], displacements: &[Vector3<f64>]) {
         self.squares.fill(0.0);
         for [a, b] in edges {
             let (a, b) = (*a as usize, *b as usize);
-            let relative = (to.get(b) - from.get(b)) - (to.get(a) - from.get(a));
+            let relative = displacements[b] - displacements[a];
             let square = relative.norm_squared();
             for node in [a, b] {
                 let largest = self.squares[node];
@@ -175,7 +175,6 @@ mod tests {
     use super::*;
     use std::collections::BTreeSet;
 
-    use nalgebra::Vector3;
     use proptest::prelude::*;
 
     use crate::geometry::topology::Topology;
@@ -210,7 +209,8 @@ mod tests {
             let mut pending = PendingAdjacentPairs::new(&pairs);
             let (from, to): (Vec<_>, Vec<_>) =
                 from.into_iter().zip(to).map(|(x, y)| (Vector3::from(x), Vector3::from(y))).unzip();
-            pending.add_motion(&topology.edges, &Field::of(&from), &Field::of(&to));
+            let u: Vec<Vector3<f64>> = from.iter().zip(&to).map(|(from, to)| to - from).collect();
+            pending.add_motion(&topology.edges, &u);
             let bounds = pending.approach_bounds.clone();
             for (node, bound) in bounds.iter().enumerate() {
                 let at_node =
@@ -219,7 +219,7 @@ mod tests {
                     triangles.iter().filter(at_node).flatten().map(|node| *node as usize).collect();
                 for p in &nodes {
                     for q in &nodes {
-                        let approach = ((to[*p] - from[*p]) - (to[*q] - from[*q])).norm();
+                        let approach = (u[*p] - u[*q]).norm();
                         prop_assert!(approach <= *bound, "{approach} {bound}");
                     }
                 }

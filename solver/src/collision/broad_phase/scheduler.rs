@@ -12,6 +12,8 @@
 //! pushed again or given to the caller. Elements that share a node are never far apart, so they are
 //! pending by the deformation around that node ([`super::adjacent`]).
 
+use nalgebra::Vector3;
+
 use super::adjacent::PendingAdjacentPairs;
 use super::clusters::MotionClusters;
 use super::collision_mesh::CollisionMesh;
@@ -68,6 +70,8 @@ pub struct CandidateScheduler {
     /// Pending pairs of elements that share a node.
     adjacent: PendingAdjacentPairs,
     kdops: KDops,
+    // Scratch memory: displacements of the nodes since the last query, m.
+    displacements: Vec<Vector3<f64>>,
     // Scratch memory: pairs of tree nodes that are due, their children, and their separations.
     due_nodes: Vec<[u32; 2]>,
     children: Vec<[u32; 2]>,
@@ -92,6 +96,7 @@ impl CandidateScheduler {
             queues: vec![PairQueue::new(bin_width, QUEUE_BINS, 0.0); pairs],
             adjacent: PendingAdjacentPairs::new(&mesh.adjacent_pairs),
             kdops: KDops::default(),
+            displacements: Vec::new(),
             due_nodes: Vec::new(),
             children: Vec::new(),
             separations: Vec::new(),
@@ -136,8 +141,10 @@ impl CandidateScheduler {
 
     /// Takes account of a motion of all nodes, without a query.
     pub fn advance(&mut self, mesh: &CollisionMesh, from: &Field, to: &Field) {
-        self.clusters.add_approach_bounds(from, to, &mut self.approach_bounds);
-        self.adjacent.add_motion(&mesh.topology.edges, from, to);
+        self.displacements.clear();
+        self.displacements.extend(to.iter().zip(from.iter()).map(|(to, from)| to - from));
+        self.clusters.add_approach_bounds(&self.displacements, &mut self.approach_bounds);
+        self.adjacent.add_motion(&mesh.topology.edges, &self.displacements);
     }
 
     /// Calls `take` with every candidate that can come within `query.radius` of each other until the
