@@ -69,7 +69,12 @@ fn resolve_all(
         for plate in &contact_model.plates {
             resolve_plate(plate, step);
         }
-        let displacement = largest_speed(instruction_set, step.velocities) * step.length;
+        // Without an impulse the velocities are those that `current` is of.
+        let displacement = if step.impulses.is_empty() {
+            current
+        } else {
+            largest_speed(instruction_set, step.velocities) * step.length
+        };
         let exceeds = displacement > prepared;
         if exceeds {
             progress.path_length -= prepared;
