@@ -98,6 +98,30 @@ fn a_table_written_twice_has_the_same_bytes_and_every_cell_counts() {
 }
 
 #[test]
+fn a_cell_that_is_kept_once_is_written_in_every_row() {
+    let text = |text: &str| Value::Text(text.to_owned());
+    for (cell_type, cell) in [
+        (CellType::Bool, Value::Bool(true)),
+        (CellType::Integer, Value::Integer(-7)),
+        (CellType::Number, Value::Number(-0.0)),
+        (CellType::Text, text("")),
+        (CellType::Text, text("of the floor")),
+        (CellType::Text, Value::Null),
+        (CellType::Number, Value::Null),
+    ] {
+        for rows in [0, 1, 5, 40_000] {
+            let bytes = |cells: ColumnCells| {
+                let columns = vec![Column { cells, ..Column::plain("a", cell_type, Vec::new()) }];
+                parquet::encode(Table { columns }).unwrap()
+            };
+            let each = ColumnCells::Each(Arc::new(vec![cell.clone(); rows]));
+            let once = ColumnCells::Same(cell.clone(), rows);
+            assert!(bytes(once) == bytes(each), "{cell_type:?} {cell:?} {rows}");
+        }
+    }
+}
+
+#[test]
 fn cells_of_measures_are_those_of_the_records_until_one_is_set() {
     let table = built();
     let mut volumes = cells(&table, "final_volume").clone();
