@@ -135,12 +135,9 @@ impl ContactModel {
     }
 
     /// Calls `visit` with every pair closer than `radius` (m) at these positions (m), and its gap (m).
-    pub fn pairs_within(&self, positions: &Field, radius: f64, mut visit: impl FnMut(Pair, f64)) {
-        pairs_within(&self.mesh, positions, radius, |pair, gap| {
-            if self.has_edge_contacts() || pair.kind == PairKind::NodeElement {
-                visit(pair, gap);
-            }
-        });
+    pub fn pairs_within(&self, positions: &Field, radius: f64, visit: impl FnMut(Pair, f64)) {
+        let kinds = if self.has_edge_contacts() { &PairKind::ALL[..] } else { NODE_ELEMENT };
+        pairs_within(&self.mesh, positions, radius, kinds, visit);
     }
 
     /// Factor on all bounds of how far a pair is from contact: 1 without a fault.
@@ -208,11 +205,9 @@ const MIN_NODES_NEAR: f64 = 0.01;
 pub fn default_distance(mesh: &CollisionMesh, positions: &Field, proportion: f64) -> f64 {
     let max_distance = MAX_DISTANCE_PER_EDGE * mean_edge_length(mesh, positions);
     let mut gap_of = vec![f64::INFINITY; mesh.topology.nodes()];
-    pairs_within(mesh, positions, max_distance / DISTANCE_PER_GAP, |pair, gap| {
-        if pair.kind == PairKind::NodeElement {
-            let of_node = &mut gap_of[pair.first as usize];
-            *of_node = of_node.min(gap);
-        }
+    pairs_within(mesh, positions, max_distance / DISTANCE_PER_GAP, NODE_ELEMENT, |pair, gap| {
+        let of_node = &mut gap_of[pair.first as usize];
+        *of_node = of_node.min(gap);
     });
     let mut gaps: Vec<f64> = gap_of.iter().copied().filter(|gap| gap.is_finite()).collect();
     gaps.sort_by(f64::total_cmp);
@@ -231,15 +226,22 @@ fn mean_edge_length(mesh: &CollisionMesh, positions: &Field) -> f64 {
     edges.iter().map(length).sum::<f64>() / edges.len() as f64
 }
 
-/// Calls `visit` with every pair closer than `radius` (m) at these positions (m), and its gap (m).
+/// The pairs of a node and an element alone.
+const NODE_ELEMENT: &[PairKind] = &[PairKind::NodeElement];
+
+/// Calls `visit` with every pair of these kinds closer than `radius` (m) at these positions (m), and its gap (m).
 fn pairs_within(
     mesh: &CollisionMesh,
     positions: &Field,
     radius: f64,
+    kinds: &[PairKind],
     mut visit: impl FnMut(Pair, f64),
 ) {
     let kdops = KDops::new(&mesh.hierarchy, positions);
     pairs_within_bounds(mesh, &kdops, radius, |kind, [first, second]| {
+        if !kinds.contains(&kind) {
+            return;
+        }
         let pair = Pair { kind, first, second };
         let gap = pair.closest(&positions.at(pair.nodes(&mesh.topology))).squared.sqrt();
         if gap < radius && !is_ignored(&mesh.topology, kind, [first, second]) {
