@@ -25,12 +25,12 @@ const DISTANCE: f64 = 1e-3;
 const MONITOR: MonitorSettings =
     MonitorSettings { block: 1, dense_block_period: u64::MAX, seed: 1 };
 
-/// Faults of contact. The number of the motion cluster is chosen: without it, film passes in these scenes. The path
+/// Faults of contact. The number of the part is chosen: without it, film passes in these scenes. The path
 /// length after which queues stop, m, is a part of that of a run.
 const FAULTS: [BroadPhaseFault; 4] = [
     BroadPhaseFault::NoEdgeContacts,
     BroadPhaseFault::ScaledBounds(10.0),
-    BroadPhaseFault::SkippedCluster(8),
+    BroadPhaseFault::SkippedPart(8),
     BroadPhaseFault::StoppedQueues(0.05),
 ];
 

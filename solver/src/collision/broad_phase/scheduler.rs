@@ -12,6 +12,8 @@
 //! pushed again or given to the caller. Elements that share a node are never far apart, so they are
 //! pending by the deformation around that node ([`super::adjacent`]).
 
+use core::ops::Range;
+
 use nalgebra::Vector3;
 
 use super::adjacent::PendingAdjacentPairs;
@@ -52,6 +54,9 @@ pub struct ProximityQuery {
 /// 32 bins is looked at early, which costs little.
 const QUEUE_BINS: usize = 32;
 
+/// Parts of the film of which a fault can leave one out.
+const PARTS: usize = 32;
+
 /// Number of candidates after which they are measured, before others are collected. Chosen: large against
 /// the cost of a batch, small against the memory of a film.
 const MAX_BATCH: usize = 16_384;
@@ -61,8 +66,8 @@ const MAX_BATCH: usize = 16_384;
 pub struct CandidateScheduler {
     instruction_set: InstructionSet,
     clusters: MotionClusters,
-    /// Tree node of a motion cluster without pairs; only in tests that inject a fault.
-    skipped_cluster: Option<usize>,
+    /// Leaves without pairs; only in tests that inject a fault.
+    skipped: Range<usize>,
     /// b of each pair of motion clusters since the last restart, m.
     approach_bounds: Vec<f64>,
     /// Pending pairs of tree nodes, one queue per pair of motion clusters.
@@ -91,7 +96,7 @@ impl CandidateScheduler {
         let mut scheduler = Self {
             instruction_set,
             clusters,
-            skipped_cluster: None,
+            skipped: 0..0,
             approach_bounds: vec![0.0; pairs],
             queues: vec![PairQueue::new(bin_width, QUEUE_BINS, 0.0); pairs],
             adjacent: PendingAdjacentPairs::new(&mesh.adjacent_pairs),
@@ -108,12 +113,12 @@ impl CandidateScheduler {
         scheduler
     }
 
-    /// Leaves out all pairs of one motion cluster, its number taken modulo the number of clusters, except
-    /// of elements that share a node. Only for tests that inject a fault.
-    pub fn skip_cluster(&mut self, cluster: usize) {
-        let clusters = self.clusters.tree_nodes();
-        self.skipped_cluster = Some(clusters.start + cluster % clusters.len());
-        self.reset();
+    /// Leaves out all pairs of one of [`PARTS`] parts of the film, except of elements that share a node. Only for tests
+    /// that inject a fault.
+    pub fn skip_part(&mut self, mesh: &CollisionMesh, part: usize) {
+        let leaves = mesh.hierarchy.leaves();
+        let start = |part: usize| leaves.start + part * leaves.len() / PARTS;
+        self.skipped = start(part)..start(part + 1);
     }
 
     /// Makes every pair due at once, as in a new scheduler.
@@ -130,9 +135,6 @@ impl CandidateScheduler {
         let clusters = self.clusters.tree_nodes();
         for a in clusters.clone() {
             for b in a..clusters.end {
-                if self.skipped_cluster.is_some_and(|skipped| skipped == a || skipped == b) {
-                    continue;
-                }
                 let pair = [a, b].map(|index| u32::try_from(index).expect("few clusters"));
                 self.queues[self.clusters.pair_of(a, b)].push(0.0, pair);
             }
@@ -282,7 +284,9 @@ impl CandidateScheduler {
         radius: f64,
         bound_factor: f64,
     ) {
-        let Self { kdops, due_nodes, children, separations, due_pairs, candidates, .. } = self;
+        let Self {
+            kdops, due_nodes, children, separations, due_pairs, candidates, skipped, ..
+        } = self;
         let (approach, queue) = (self.approach_bounds[clusters], &mut self.queues[clusters]);
         let first_leaf = mesh.hierarchy.first_leaf();
         queue.pop_until(approach + reach, due_nodes);
@@ -304,7 +308,10 @@ impl CandidateScheduler {
                 }
                 if a < first_leaf {
                     push_child_pairs(pair, children);
-                } else if !mesh.hierarchy.share_mesh_node(a, b) {
+                } else if !mesh.hierarchy.share_mesh_node(a, b)
+                    && !skipped.contains(&a)
+                    && !skipped.contains(&b)
+                {
                     push_candidates(&mesh.hierarchy, a, b, candidates);
                     let ends = [candidates[0].len(), candidates[1].len()];
                     due_pairs.push((PendingPair::Leaves { leaves: pair, clusters }, ends));

@@ -8,9 +8,9 @@ use super::pair::Pair;
 /// How contact is blinded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BroadPhaseFault {
-    /// The film of one motion cluster has no pairs, except of elements that share a node. The number is
-    /// taken modulo the number of clusters.
-    SkippedCluster(usize),
+    /// One of 32 parts of the film, subtrees of the hierarchy of elements, has no pairs, except of elements that share
+    /// a node.
+    SkippedPart(usize),
     /// Factor on all bounds of how far a pair is from contact. Above 1 a pair counts as farther away than it is.
     ScaledBounds(f64),
     /// Pairs that are pending at this path length (m) never come due.

@@ -133,8 +133,8 @@ impl CandidateList {
             gaps: Vec::new(),
             hits: Vec::new(),
         };
-        if let Some(BroadPhaseFault::SkippedCluster(cluster)) = model.broad_phase_fault {
-            list.scheduler.skip_cluster(cluster);
+        if let Some(BroadPhaseFault::SkippedPart(part)) = model.broad_phase_fault {
+            list.scheduler.skip_part(&model.mesh, part);
         }
         list.collect(model, positions, [path_length, path_length]);
         list

@@ -29,7 +29,8 @@ const CELL_WIDTH: f64 = 3.0;
 /// Largest number of cells along an axis. Chosen: it bounds memory where boxes differ much in size.
 const MAX_CELLS: usize = 256;
 
-/// Number of pairs that are tested together. Chosen: small against the cache, large against a group of lanes.
+/// Number of pairs after which they are tested. Chosen: small against the memory of a film, large against a group of
+/// lanes.
 pub const BATCH: usize = 4096;
 
 /// Ends of boxes along one axis, one entry for each box: lower ends and upper ends, m.
@@ -88,7 +89,8 @@ impl BoxPairs {
     /// Several frames must have the same nodes. The mean motion of the film from the first frame to each
     /// other one is taken off.
     ///
-    /// Returns the number of pairs; ends and returns `None` once there are more than `most`.
+    /// Returns the number of pairs; ends and returns `None` once there are more than `most`, of which `take` may have had
+    /// some.
     pub fn find(
         &mut self,
         instruction_set: InstructionSet,

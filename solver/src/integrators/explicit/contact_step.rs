@@ -69,7 +69,7 @@ fn resolve_all(
         for plate in &contact_model.plates {
             resolve_plate(plate, step);
         }
-        // Without an impulse the velocities are those that `current` is of.
+        // Without an impulse `current` still holds.
         let displacement = if step.impulses.is_empty() {
             current
         } else {

@@ -5,7 +5,7 @@
 //! after    static equilibria + history file
 //! job      the larger of the two, and of the mesh that gives the default contact distance
 //!
-//! contact  5 MB + (5.7 + 2.2 log2(1 + M/4) + 0.13 (N - 6)) kB e
+//! contact  7 MB + (3.4 + 2.8 log2(1 + M/4) + 0.06 (N - 6)) kB e
 //! statics  (2.8 + 0.19 log2(e/48)) kB e
 //! ```
 //!
@@ -21,16 +21,16 @@ const MESH: f64 = 800.0;
 /// Checkpoint of a run as text, bytes per element and per sample.
 const CHECKPOINT: [f64; 2] = [300.0, 900.0];
 /// Queues of contact, whatever the mesh, bytes.
-const CONTACT_QUEUES: f64 = 5e6;
+const CONTACT_QUEUES: f64 = 7e6;
 /// Contact of a film that is not folded, bytes per element; 1600 of them are the frames of a block of the
 /// monitor.
-const CONTACT: f64 = 5700.0;
+const CONTACT: f64 = 3400.0;
 /// Contact for each doubling of the number of layers, bytes per element.
-const CONTACT_LAYERS: f64 = 2200.0;
+const CONTACT_LAYERS: f64 = 2800.0;
 /// The mesh of 4 subdivisions that gives the default contact distance, bytes per element of it.
 const REFERENCE_GAP: f64 = 1100.0;
 /// Contact and static equilibria for each panel beyond 6, bytes per element.
-const PANELS: [f64; 2] = [130.0, 8.0];
+const PANELS: [f64; 2] = [60.0, 8.0];
 /// Static equilibria, bytes per element: of a small mesh, and for each doubling of its elements.
 const STATICS: [f64; 2] = [2800.0, 190.0];
 /// Bending, bytes per element: of energy and forces; with its stiffness, of a small mesh, and for each doubling of its
