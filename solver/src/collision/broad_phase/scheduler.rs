@@ -113,7 +113,7 @@ impl CandidateScheduler {
         scheduler
     }
 
-    /// Leaves out all pairs of one of [`PARTS`] parts of the film, except of elements that share a node. Only for tests
+    /// Leaves out all pairs of one of 32 parts of the film, except of elements that share a node. Only for tests
     /// that inject a fault.
     pub fn skip_part(&mut self, mesh: &CollisionMesh, part: usize) {
         let leaves = mesh.hierarchy.leaves();
