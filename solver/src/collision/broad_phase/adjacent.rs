@@ -130,11 +130,6 @@ impl PendingAdjacentPairs {
         }
     }
 
-    /// Number of nodes of the film.
-    pub fn nodes(&self) -> usize {
-        self.first_due.len()
-    }
-
     /// Removes every pair of a node that is due when the film around the node approaches by `reach` (m) more, and calls
     /// `visit` with its number and its candidates of each kind.
     #[inline]
@@ -225,7 +220,7 @@ mod tests {
                 }
             }
             let mut visited: [BTreeSet<[u32; 2]>; 2] = Default::default();
-            for node in 0..pending.nodes() {
+            for node in 0..topology.nodes() {
                 pending.pop_due(&pairs, node, 0.0, |_, candidates| {
                     for (visited, candidates) in visited.iter_mut().zip(candidates) {
                         for pair in candidates {

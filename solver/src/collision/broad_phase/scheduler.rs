@@ -246,7 +246,7 @@ impl CandidateScheduler {
             self.refine_clusters(mesh, clusters, reach, radius, bound_factor);
             self.resolve_batch(&mut resolve);
         }
-        for node in 0..self.adjacent.nodes() {
+        for node in 0..mesh.topology.nodes() {
             let Self { adjacent, due_pairs, candidates, .. } = &mut *self;
             adjacent.pop_due(&mesh.adjacent_pairs, node, reach, |pair, adjacent| {
                 for (candidates, adjacent) in candidates.iter_mut().zip(adjacent) {

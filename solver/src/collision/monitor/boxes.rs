@@ -53,7 +53,7 @@ pub struct BoxPairs {
     entries: Vec<u32>,
     /// The elements of one cell.
     cell: Cell,
-    /// Pairs that have not been given away.
+    /// Pairs found since the last batch.
     pairs: Vec<[u32; 2]>,
 }
 
